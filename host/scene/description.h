@@ -1,0 +1,116 @@
+// A scene as its file describes it: plain data, validated, in world units, before any class or device is known.
+//
+// The importer (gltf.h) makes one; compile_scene (scene.h) turns it into records, hierarchies and buffers.
+// Units: metres, radians, nanometres; radiance so that (1,1,1) has luminance 1 cd/m².
+#pragma once
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace etendue {
+
+// One object of a class behind one of the six interfaces. `parameters` is a JSON object whose keys are members of
+// the class's record (unknown keys are reported when the record is filled). Values follow the scene format; a glTF
+// textureInfo is {"index": i, "texCoord": n, …} with `index` into SceneDescription::textures. Paths of files inside
+// `parameters` are relative to SceneDescription::folder.
+struct ObjectDescription {
+    std::string class_name;
+    nlohmann::json parameters = nlohmann::json::object();
+    std::string where;  // JSON pointer of the object in the scene file, for messages
+};
+
+// The emission of a material. `value` is in the unit that `quantity` names: radiance and luminance in the unit of
+// the image (1 = 1 cd/m² for white), power and flux of the whole emitting object in W (or lm for flux).
+struct EmissionDescription {
+    enum class Quantity { radiance, luminance, power, flux };
+    Quantity quantity = Quantity::radiance;
+    nlohmann::json value = 0.0;     // a spectral value
+    nlohmann::json spectrum;        // a spectral value that multiplies `value`; null = 1
+    nlohmann::json texture;         // glTF textureInfo (emissiveTexture), or null
+    std::string where;
+};
+
+struct MaterialDescription {
+    std::string name;
+    ObjectDescription surface;
+    std::string inside, outside;    // names of media; empty = none named
+    std::optional<EmissionDescription> emission;
+    bool double_sided = false;      // emits on both sides (surfaces scatter on both sides in any case)
+    nlohmann::json normal_texture;  // glTF normalTextureInfo with `scale`, or null
+};
+
+struct MediumDescription {
+    std::string name;
+    ObjectDescription medium;
+};
+
+// One glTF primitive: indexed triangles. Every attribute array is empty or as long as `positions`.
+struct MeshDescription {
+    std::string name, where;
+    std::vector<glm::vec3> positions;   // m, finite
+    std::vector<glm::vec3> normals;     // unit
+    std::vector<glm::vec4> tangents;    // unit, w = ±1
+    std::vector<glm::vec2> uv0, uv1;
+    std::vector<glm::vec4> colors;      // linear
+    std::vector<glm::uvec3> triangles;  // all indices in range; triangles of zero area already left out
+    uint32_t material = 0;              // index into SceneDescription::materials (a default one is appended if needed)
+};
+
+struct MeshInstance {
+    uint32_t mesh = 0;
+    glm::dmat4 world_from_local{1.0};
+    std::string where;
+};
+
+// An object placed by a node: a geometry with its material, a light, a receiver or an element.
+struct PlacedObject {
+    std::string name;
+    ObjectDescription object;
+    glm::dmat4 world_from_local{1.0};
+    uint32_t material = 0;  // geometry only
+};
+
+// 8-bit images keep their bytes; float images (.hdr, .exr) are linear.
+struct ImageDescription {
+    std::string name;
+    uint32_t width = 0, height = 0;
+    std::vector<uint8_t> rgba8;     // 4 bytes a texel, or
+    std::vector<float> rgba32f;     // 4 floats a texel; exactly one of the two is filled
+};
+
+enum class Wrap : uint32_t { repeat = 0, clamp = 1, mirror = 2 };
+struct TextureDescription {
+    uint32_t image = 0;
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    bool nearest = false;
+};
+
+// A class file that the scene brings along: {"interface": "surface", "file": "velvet.glsl"}.
+struct ClassFileDescription {
+    std::string interface;  // surface, geometry, light, receiver, medium, element
+    std::filesystem::path file;
+    std::string where;
+};
+
+struct SceneDescription {
+    std::filesystem::path file, folder;
+    std::vector<ClassFileDescription> class_files;
+    std::map<std::string, nlohmann::json> spectra;  // named spectral values
+    std::vector<MediumDescription> media;
+    std::vector<MaterialDescription> materials;
+    std::vector<ImageDescription> images;
+    std::vector<TextureDescription> textures;
+    std::vector<MeshDescription> meshes;
+    std::vector<MeshInstance> instances;
+    std::vector<PlacedObject> shapes, lights, receivers, elements;
+    std::optional<ObjectDescription> environment;
+    std::vector<std::string> warnings;  // one line each: what was read but is not modelled
+};
+
+}  // namespace etendue

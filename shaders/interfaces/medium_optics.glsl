@@ -1,0 +1,28 @@
+// MediumOptics: what happens between surfaces. A class NAME defines, for its record R:
+//
+//   float    NAME_ior(R r)                          real refractive index
+//   Spectrum NAME_transmittance(R r, float distance)   part that is left after `distance` metres
+//
+// No medium (NO_RECORD) is vacuum: ior 1, nothing absorbed.
+
+#include "generated/medium_classes.glsl"
+
+float medium_ior(uint ref) {
+    float result = 1.0;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_ior(name##_records[record_index(ref)]); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+Spectrum medium_transmittance(uint ref, float distance) {
+    Spectrum result = Spectrum(1);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_transmittance(name##_records[record_index(ref)], distance); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}

@@ -1,0 +1,88 @@
+// SurfaceOptics: how a surface scatters light. Directions are unit vectors in the local shading frame, both pointing
+// away from the surface; +z is the shading normal, on the side of the geometric normal. A class NAME defines, for
+// its record R:
+//
+//   Spectrum   NAME_eval(R r, SurfaceContext c, vec3 wo, vec3 wi)    f * |cos wi|, 1/sr, without delta parts
+//   float      NAME_pdf(R r, SurfaceContext c, vec3 wo, vec3 wi)     of `sample` choosing wi given wo, 1/sr, without delta parts
+//   BsdfSample NAME_sample(R r, SurfaceContext c, vec3 wo, vec3 u)   wi with weight f * |cos wi| / pdf
+//   Spectrum   NAME_transparency(R r, SurfaceContext c, vec3 wo)     part that passes straight on, unscattered
+//   bool       NAME_is_delta(R r, SurfaceContext c)                  eval is zero for every pair of directions
+//
+// wo is the direction where the path comes from, wi where it goes. c.importance tells the transport direction: false
+// carries radiance (backward rays: transmission scales by (ior_i / ior_o)², Veach 1997 eq. 5.12), true carries power.
+// Corrections for shading normals are made by the callers (lib/scattering.glsl), once for all classes.
+
+struct SurfaceContext {
+    vec2 uv0, uv1;          // texture coordinates
+    vec4 color;             // vertex color, linear
+    float ior_above;        // real refractive index of the medium on the side of +z
+    float ior_below;
+    bool importance;
+};
+
+const uint EVENT_NONE = 0u;      // absorbed
+const uint EVENT_REFLECT = 1u;
+const uint EVENT_TRANSMIT = 2u;
+const uint EVENT_DELTA = 4u;     // pdf is the probability of the discrete direction, not a density
+const uint EVENT_STRAIGHT = 8u;  // passes on unscattered (the part that `transparency` gives); implies DELTA | TRANSMIT
+
+struct BsdfSample {
+    vec3 wi;
+    Spectrum weight;
+    float pdf;
+    uint event;
+};
+
+BsdfSample no_bsdf_sample() { return BsdfSample(vec3(0, 0, 1), Spectrum(0), 0.0, EVENT_NONE); }
+
+#include "generated/surface_classes.glsl"
+
+Spectrum surface_eval(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
+    Spectrum result = Spectrum(0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_eval(name##_records[record_index(ref)], c, wo, wi); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+float surface_pdf(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
+    float result = 0.0;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_pdf(name##_records[record_index(ref)], c, wo, wi); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
+    BsdfSample result = no_bsdf_sample();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_sample(name##_records[record_index(ref)], c, wo, u); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+Spectrum surface_transparency(uint ref, SurfaceContext c, vec3 wo) {
+    Spectrum result = Spectrum(0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_transparency(name##_records[record_index(ref)], c, wo); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+bool surface_is_delta(uint ref, SurfaceContext c) {
+    bool result = true;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_is_delta(name##_records[record_index(ref)], c); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}

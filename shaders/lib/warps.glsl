@@ -1,0 +1,32 @@
+// Warps of uniform points on [0,1)² to the distributions that samplers need.
+
+// Concentric map of Shirley & Chiu 1997: uniform on the unit disk.
+vec2 warp_disk(vec2 u) {
+    vec2 o = 2.0 * u - 1.0;
+    bool wide = abs(o.x) > abs(o.y);
+    float r = wide ? o.x : o.y;
+    float s = wide ? o.y : o.x;
+    if (r == 0.0) return vec2(0.0);
+    float phi = (PI / 4.0) * (s / r);
+    if (!wide) phi = PI / 2.0 - phi;
+    return r * vec2(cos(phi), sin(phi));
+}
+
+// Cosine-weighted on the hemisphere z > 0; pdf = z / pi.
+vec3 warp_cosine_hemisphere(vec2 u) {
+    vec2 d = warp_disk(u);
+    return vec3(d, sqrt(max(0.0, 1.0 - dot(d, d))));
+}
+
+// Uniform on the unit sphere; pdf = 1 / (4 pi).
+vec3 warp_sphere(vec2 u) {
+    float z = 1.0 - 2.0 * u.x;
+    float r = sqrt(max(0.0, 1.0 - z * z));
+    float phi = 2.0 * PI * u.y;
+    return vec3(r * cos(phi), r * sin(phi), z);
+}
+
+// Uniform barycentrics (b1, b2) on a triangle (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").
+vec2 warp_triangle(vec2 u) {
+    return u.x < u.y ? vec2(0.5 * u.x, u.y - 0.5 * u.x) : vec2(u.x - 0.5 * u.y, 0.5 * u.y);
+}

@@ -1,0 +1,45 @@
+// Every class of scene object: X(tag, Struct, name), one table per interface.
+//
+// The class stands in one file, FOLDER/name.glsl, with its record `Struct` and functions `name_…`. A tag is written
+// into RecordRefs and never renumbered. Tags 128 to 254 are for classes that a scene brings along.
+// The host reads this file as text; shaders see only the classes that a scene uses (see generated headers in
+// host/scene/features.h).
+
+// folder geometry/, contract interfaces/geometry.glsl
+#define GEOMETRY_CLASSES(X)            \
+    X(1, Triangle, triangle)           \
+    X(2, Sphere, sphere)               \
+    X(3, Disk, disk)                   \
+    X(4, Rectangle, rectangle)         \
+    X(5, Cylinder, cylinder)
+
+// folder lights/, contract interfaces/light_source.glsl
+#define LIGHT_CLASSES(X)               \
+    X(1, AreaLight, area)              \
+    X(2, PointLight, point)            \
+    X(3, SpotLight, spot)              \
+    X(4, DirectionalLight, directional)\
+    X(5, ConstantEnvironment, constant)\
+    X(6, ImageEnvironment, image)
+
+// folder receivers/, contract interfaces/receiver.glsl
+#define RECEIVER_CLASSES(X)            \
+    X(1, PerspectiveCamera, perspective) \
+    X(2, OrthographicCamera, orthographic)
+
+// folder surfaces/, contract interfaces/surface_optics.glsl
+#define SURFACE_CLASSES(X)             \
+    X(1, Lambertian, lambertian)       \
+    X(2, Conductor, conductor)         \
+    X(3, Dielectric, dielectric)       \
+    X(4, ThinDielectric, thin_dielectric) \
+    X(5, Absorber, absorber)           \
+    X(6, Boundary, boundary)           \
+    X(7, Principled, principled)
+
+// folder media/, contract interfaces/medium_optics.glsl
+#define MEDIUM_CLASSES(X)              \
+    X(1, Homogeneous, homogeneous)
+
+// folder elements/, contract interfaces/optical_element.glsl
+#define ELEMENT_CLASSES(X)
