@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 packages=(
     cmake ninja-build g++ pkg-config clang-format
     libvulkan-dev vulkan-validationlayers libvulkan1
-    glslang-dev spirv-tools libglm-dev libtinygltf-dev libopenexr-dev libfmt-dev
+    glslang-dev spirv-tools spirv-headers libglm-dev libtinygltf-dev libopenexr-dev libfmt-dev
     libcli11-dev nlohmann-json3-dev doctest-dev libstb-dev
 )
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }

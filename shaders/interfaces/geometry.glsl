@@ -12,6 +12,9 @@
 //
 // Sampling is over the side(s) that can emit; pdfs are per area of the local frame (1/m²), which stay right under
 // any affine map after division by its area factor.
+#include "lib/constants.glsl"
+#include "lib/records.glsl"
+#include "lib/warps.glsl"
 
 struct GeometryHit {
     float t;     // along direction

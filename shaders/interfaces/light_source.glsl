@@ -9,6 +9,11 @@
 //   void        NAME_bounds(R r, out vec3 lo, out vec3 hi)             world box; lo > hi for a light at infinity
 //
 // All in world space.
+#include "lib/constants.glsl"
+#include "lib/spectrum.glsl"
+#include "lib/records.glsl"
+#include "lib/warps.glsl"
+#include "lib/frames.glsl"
 
 struct LightSample {
     vec3 direction;     // unit, from the point to the light
@@ -29,6 +34,17 @@ struct LightHit {
 
 struct SceneBounds { vec3 center; float radius; };
 
+// Normals lie within an angle n of the axis; light leaves within an angle e of some normal, strongest along it. Both as
+// cosines; may be too wide, never too narrow.
+struct LightCone {
+    vec3 axis;            // unit
+    float cos_normals;    // cos n; -1 = all directions
+    float cos_emission;   // cos e; 0 for a surface
+};
+
+LightCone whole_sphere_cone() { return LightCone(vec3(0, 0, 1), -1.0, 0.0); }
+
+#include "lib/accurate_math.glsl"
 #include "generated/light_classes.glsl"
 
 LightSample light_sample_towards(uint ref, vec3 point, vec2 u) {
@@ -78,4 +94,14 @@ void light_bounds(uint ref, out vec3 lo, out vec3 hi) {
         LIGHT_CLASSES(CASE)
 #undef CASE
     }
+}
+
+LightCone light_cone(uint ref) {
+    LightCone result = whole_sphere_cone();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_cone(name##_records[record_index(ref)]); break;
+        LIGHT_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
 }

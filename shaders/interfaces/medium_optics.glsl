@@ -4,6 +4,9 @@
 //   Spectrum NAME_transmittance(R r, float distance)   part that is left after `distance` metres
 //
 // No medium (NO_RECORD) is vacuum: ior 1, nothing absorbed.
+#include "lib/constants.glsl"
+#include "lib/spectrum.glsl"
+#include "lib/records.glsl"
 
 #include "generated/medium_classes.glsl"
 

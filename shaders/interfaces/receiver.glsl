@@ -3,6 +3,9 @@
 //   CameraRay NAME_emit(R r, vec2 film, float film_aspect)   the backward ray through a point of the film
 //
 // `film` runs over [0,1]², x to the right, y down; film_aspect = width / height of the image. World space.
+#include "lib/constants.glsl"
+#include "lib/records.glsl"
+#include "lib/warps.glsl"
 
 struct CameraRay {
     vec3 origin;

@@ -11,6 +11,11 @@
 // wo is the direction where the path comes from, wi where it goes. c.importance tells the transport direction: false
 // carries radiance (backward rays: transmission scales by (ior_i / ior_o)², Veach 1997 eq. 5.12), true carries power.
 // Corrections for shading normals are made by the callers (lib/scattering.glsl), once for all classes.
+#include "lib/constants.glsl"
+#include "lib/spectrum.glsl"
+#include "lib/records.glsl"
+#include "lib/warps.glsl"
+#include "lib/textures.glsl"
 
 struct SurfaceContext {
     vec2 uv0, uv1;          // texture coordinates

@@ -1,4 +1,5 @@
 // Warps of uniform points on [0,1)² to the distributions that samplers need.
+#include "lib/constants.glsl"
 
 // Concentric map of Shirley & Chiu 1997: uniform on the unit disk.
 vec2 warp_disk(vec2 u) {

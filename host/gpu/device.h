@@ -1,0 +1,65 @@
+// The Vulkan device: instance, choice of physical device, required features, one compute queue.
+#pragma once
+#include <vulkan/vulkan.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace etendue {
+
+// What `etendue devices` prints of one physical device.
+struct DeviceDescription {
+    uint32_t index = 0;
+    std::string name, driver;         // driver: name, version and information as the driver gives them
+    std::string type;                 // discrete GPU, integrated GPU, virtual GPU, CPU, other
+    uint32_t api_version = 0;
+    uint32_t subgroup_size = 0;
+    uint64_t max_buffer_range = 0;    // bytes of one storage buffer binding
+    uint64_t max_allocation = 0;      // bytes
+    uint64_t memory = 0;              // bytes of the largest device-local heap
+    std::vector<std::string> missing; // what étendue needs and the device lacks; empty = usable
+};
+
+struct DeviceOptions {
+    std::string selector;     // index, or part of the name; empty = the default device
+    bool validation = false;  // Khronos validation layer; its messages are collected in Device::validation_messages
+};
+
+struct Device {
+    VkInstance instance = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger = VK_NULL_HANDLE;
+    VkPhysicalDevice physical = VK_NULL_HANDLE;
+    VkDevice handle = VK_NULL_HANDLE;
+    VkQueue queue = VK_NULL_HANDLE;
+    uint32_t queue_family = 0;
+    VkCommandPool command_pool = VK_NULL_HANDLE;
+    VkPhysicalDeviceMemoryProperties memory_properties{};
+    DeviceDescription description;
+    double timestamp_period = 0;  // nanoseconds a tick; 0 = no timestamps
+    bool debug_names = false;
+    uint64_t bytes_allocated = 0, peak_bytes_allocated = 0;
+    std::vector<std::string> validation_messages;
+
+    Device() = default;
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+    ~Device();
+};
+
+// The default is the first discrete GPU, then an integrated or virtual one, then a CPU implementation; of equals
+// the first that Vulkan lists. Errors (exit code 3): no Vulkan, no device, none usable (with what it lacks),
+// selector that matches none (lists the devices).
+std::unique_ptr<Device> create_device(const DeviceOptions& options = {});
+
+std::vector<DeviceDescription> list_devices();
+// Index into list_devices() of the one that create_device chooses by default; -1 where none is usable.
+int default_device(const std::vector<DeviceDescription>& devices);
+
+// Fails with exit code 3 and one line that names the call; out-of-memory results say so.
+void check(VkResult result, const char* call);
+
+void set_debug_name(const Device& device, VkObjectType type, uint64_t handle, const std::string& name);
+
+}  // namespace etendue

@@ -1,0 +1,86 @@
+// Compute kernels: pipelines whose bindings, push constants and workgroup size come from their SPIR-V, and lists of
+// dispatches that are timed by kernel name.
+#pragma once
+#include <bit>
+#include <initializer_list>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "host/gpu/buffer.h"
+#include "host/gpu/reflection.h"
+
+namespace etendue {
+
+// Buffers by the names of the blocks that shaders see them through.
+using BufferTable = std::map<std::string, const Buffer*>;
+
+// The value of a push constant, by its name in the shader.
+struct PushValue {
+    PushValue(std::string name, uint32_t value) : name(std::move(name)), bits(value) {}
+    PushValue(std::string name, int value) : name(std::move(name)), bits(uint32_t(value)) {}
+    PushValue(std::string name, float value) : name(std::move(name)), bits(std::bit_cast<uint32_t>(value)) {}
+    std::string name;
+    uint32_t bits;
+};
+
+// A pipeline bound to its buffers, which must outlive it. Owns its Vulkan objects; movable.
+class Kernel {
+  public:
+    Kernel() = default;
+    // Fails with a clear line when `buffers` lacks one that the shader reads, or one is too large for a binding.
+    Kernel(Device& device, const CompiledShader& shader, const BufferTable& buffers);
+    Kernel(Kernel&& other) noexcept { swap(other); }
+    Kernel& operator=(Kernel&& other) noexcept { swap(other); return *this; }
+    ~Kernel();
+
+    const std::string& name() const { return name_; }
+    const ShaderLayout& layout() const { return layout_; }
+    uint32_t group_size() const { return layout_.local_size[0] * layout_.local_size[1] * layout_.local_size[2]; }
+
+  private:
+    friend class CommandList;
+    void swap(Kernel& other) noexcept;
+    Device* device_ = nullptr;
+    std::string name_;
+    ShaderLayout layout_;
+    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+    VkPipelineLayout pipeline_layout_ = VK_NULL_HANDLE;
+    VkPipeline pipeline_ = VK_NULL_HANDLE;
+    VkDescriptorPool pool_ = VK_NULL_HANDLE;
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
+};
+
+struct KernelTiming {
+    double seconds = 0;
+    uint64_t dispatches = 0;
+};
+using KernelTimings = std::map<std::string, KernelTiming>;
+
+// Dispatches in order, each seeing what the ones before it wrote. Usable again after run().
+class CommandList {
+  public:
+    explicit CommandList(Device& device);
+    CommandList(const CommandList&) = delete;
+    ~CommandList();
+
+    void dispatch(const Kernel& kernel, uint32_t groups, std::initializer_list<PushValue> values = {});
+    // Group counts are three words in `arguments` at `offset` bytes.
+    void dispatch_indirect(const Kernel& kernel, const Buffer& arguments, uint64_t offset,
+                           std::initializer_list<PushValue> values = {});
+    void fill(const Buffer& buffer, uint32_t word, uint64_t offset = 0, uint64_t bytes = VK_WHOLE_SIZE);
+    // Submits, waits, and adds the time of each kernel to `timings` where one is given.
+    void run(KernelTimings* timings = nullptr);
+
+  private:
+    void prepare(const Kernel& kernel, std::initializer_list<PushValue> values);
+    void begin();
+    void barrier();
+    void stamp(VkPipelineStageFlagBits stage);
+    Device& device_;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+    VkQueryPool queries_ = VK_NULL_HANDLE;
+    std::vector<std::string> timed_;  // kernel of each pair of time stamps
+};
+
+}  // namespace etendue

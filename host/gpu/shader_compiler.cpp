@@ -1,0 +1,176 @@
+#include "host/gpu/shader_compiler.h"
+
+#include <glslang/SPIRV/GlslangToSpv.h>
+#include <glslang/Public/ResourceLimits.h>
+#include <glslang/Public/ShaderLang.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <set>
+#include <spirv-tools/optimizer.hpp>
+
+#include "host/error.h"
+
+namespace etendue {
+namespace {
+
+// Stands in front of every kernel; class files and kernels carry no boilerplate.
+const char* const prelude = R"(#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_vote : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_EXT_buffer_reference : enable
+#extension GL_EXT_buffer_reference_uvec2 : enable
+)";
+
+// All names are relative to the shader root, so the includer of a file plays no part. A file is included once: a second
+// #include of it is empty, so that every file names what it needs.
+class Includer : public glslang::TShader::Includer {
+  public:
+    explicit Includer(const ShaderSources& sources) : sources_(sources) {}
+
+    IncludeResult* includeLocal(const char* name, const char*, size_t) override {
+        auto text = sources_.find(name);
+        if (!text) return nullptr;
+        if (!included_.insert(name).second) text->clear();
+        auto* owned = new std::string(std::move(*text));
+        return new IncludeResult(name, owned->data(), owned->size(), owned);
+    }
+    void releaseInclude(IncludeResult* result) override {
+        if (!result) return;
+        delete static_cast<std::string*>(result->userData);
+        delete result;
+    }
+
+  private:
+    const ShaderSources& sources_;
+    std::set<std::string> included_;
+};
+
+// glslang's log starts with "ERROR: FILE:LINE: message"; the first such line is what a user needs.
+std::string first_error(const char* log) {
+    std::string_view text = log;
+    size_t start = text.find("ERROR: ");
+    if (start == std::string_view::npos) return std::string(text);
+    text.remove_prefix(start + 7);
+    text = text.substr(0, text.find('\n'));
+    while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+    return std::string(text);
+}
+
+uint64_t fnv1a(std::string_view text, uint64_t hash = 0xcbf29ce484222325ull) {
+    for (unsigned char c : text) hash = (hash ^ c) * 0x100000001b3ull;
+    return hash;
+}
+
+bool read_spirv(const std::filesystem::path& path, Spirv& spirv) {
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    if (!file) return false;
+    const auto bytes = size_t(file.tellg());
+    if (bytes < 20 || bytes % 4) return false;
+    spirv.resize(bytes / 4);
+    file.seekg(0);
+    file.read(reinterpret_cast<char*>(spirv.data()), std::streamsize(bytes));
+    return file.good() && spirv[0] == 0x07230203u;
+}
+
+// Written beside its place and renamed, so that a reader never sees half a file. A full disk only costs the cache.
+void write_spirv(const std::filesystem::path& path, const Spirv& spirv) {
+    std::filesystem::path temporary = path;
+    temporary += fmt::format(".{}", ::getpid());
+    std::ofstream file(temporary, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(spirv.data()), std::streamsize(spirv.size() * 4));
+    file.close();
+    std::error_code error;
+    if (file) std::filesystem::rename(temporary, path, error);
+    else std::filesystem::remove(temporary, error);
+}
+
+void optimize(Spirv& spirv) {
+    spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
+    optimizer.SetMessageConsumer([](spv_message_level_t, const char*, const spv_position_t&, const char*) {});
+    optimizer.RegisterPerformancePasses();
+    spvtools::OptimizerOptions options;
+    options.set_run_validator(false);
+    Spirv optimized;
+    if (optimizer.Run(spirv.data(), spirv.size(), &optimized, options)) spirv = std::move(optimized);
+}
+
+struct GlslangProcess {
+    GlslangProcess() { glslang::InitializeProcess(); }
+    ~GlslangProcess() { glslang::FinalizeProcess(); }
+};
+
+}  // namespace
+
+CompiledShader compile_shader(const ShaderSources& sources, const std::string& name, const CompileOptions& options) {
+    static GlslangProcess process;
+    const auto start = std::chrono::steady_clock::now();
+    CompiledShader result;
+    result.name = std::filesystem::path(name).stem().string();
+
+    const std::string text = prelude + options.defines + "#line 1\n" + sources.get(name);
+    const char* text_pointer = text.c_str();
+    const int text_length = int(text.size());
+    const char* text_name = name.c_str();
+    auto set_up = [&](glslang::TShader& shader) {
+        shader.setStringsWithLengthsAndNames(&text_pointer, &text_length, &text_name, 1);
+        shader.setEnvInput(glslang::EShSourceGlsl, EShLangCompute, glslang::EShClientVulkan, 100);
+        shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
+        shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
+        shader.setAutoMapBindings(true);
+    };
+    const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules);
+    const TBuiltInResource* limits = GetDefaultResources();
+
+    std::filesystem::path cached;
+    if (!options.cache_folder.empty()) {
+        glslang::TShader shader(EShLangCompute);
+        set_up(shader);
+        std::string preprocessed;
+        Includer includer(sources);
+        if (!shader.preprocess(limits, 460, ECoreProfile, false, false, messages, &preprocessed, includer))
+            fail_input("{}", first_error(shader.getInfoLog()));
+        const uint64_t hash = fnv1a(preprocessed, fnv1a(ETENDUE_VERSION, options.optimize ? 1 : 2));
+        cached = options.cache_folder / fmt::format("{}-{:016x}.spv", result.name, hash);
+        if (read_spirv(cached, result.spirv)) {
+            result.from_cache = true;
+            return result;
+        }
+    }
+
+    glslang::TShader shader(EShLangCompute);
+    set_up(shader);
+    Includer includer(sources);
+    if (!shader.parse(limits, 460, false, messages, includer)) fail_input("{}", first_error(shader.getInfoLog()));
+    glslang::TProgram program;
+    program.addShader(&shader);
+    if (!program.link(messages) || !program.mapIO()) fail_input("{}", first_error(program.getInfoLog()));
+    glslang::SpvOptions spv_options;
+    spv_options.disableOptimizer = true;
+    glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), result.spirv, &spv_options);
+    if (options.optimize) optimize(result.spirv);
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!cached.empty()) write_spirv(cached, result.spirv);
+    return result;
+}
+
+std::filesystem::path default_cache_folder() {
+    std::filesystem::path folder;
+    if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg) folder = xdg;
+    else if (const char* home = std::getenv("HOME"); home && *home) folder = std::filesystem::path(home) / ".cache";
+    else return {};
+    folder = folder / "etendue" / "kernels";
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    return error ? std::filesystem::path() : folder;
+}
+
+}  // namespace etendue

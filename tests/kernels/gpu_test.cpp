@@ -1,0 +1,65 @@
+// The GPU layer: buffers, reflection, kernels, push constants, indirect dispatch, timing.
+#include <numeric>
+
+#include "host/error.h"
+#include "tests/support/device_fixture.h"
+
+using namespace etendue;
+
+TEST_CASE("a kernel's bindings, push constants and records are read from its SPIR-V") {
+    ShaderSources sources;
+    sources.generated["probe"] = R"(
+        layout(local_size_x = 64) in;
+        struct Inner { vec4 data; };
+        struct Record { float a; Inner inner; vec3 b; uint c; };
+        layout(scalar, set = 0, binding = 5) readonly buffer Records__first { Record first[]; };
+        layout(scalar, set = 0) buffer Results { float results[]; };
+        layout(push_constant) uniform Push { uint count; float factor; };
+        void main() { if (gl_GlobalInvocationID.x < count) results[gl_GlobalInvocationID.x] = factor * first[0].b.y + first[0].inner.data.x; }
+    )";
+    const ShaderLayout layout = reflect_shader(compile_shader(sources, "probe").spirv);
+    REQUIRE(layout.blocks.size() == 2);
+    const BlockLayout& records = layout.blocks[0].name == "Records" ? layout.blocks[0] : layout.blocks[1];
+    CHECK(records.binding == 5);
+    CHECK(records.stride == 36);
+    CHECK(records.element_type == "Record");
+    REQUIRE(records.element_members.size() == 4);
+    CHECK(records.element_members[1].type == "Inner");
+    CHECK(records.element_members[2].type == "vec3");
+    CHECK(records.element_members[2].offset == 20);
+    CHECK(layout.push_constants.size() == 2);
+    CHECK(layout.local_size[0] == 64);
+}
+
+TEST_CASE("a kernel reads buffers and push constants and writes its results") {
+    Device& device = test_device();
+    std::vector<float> input(1000);
+    std::iota(input.begin(), input.end(), 0.0f);
+    Buffer in = create_buffer(device, input, "input");
+    Buffer out(device, 4000, "output");
+    const Kernel kernel = make_test_kernel("scale_input", R"(
+        layout(local_size_x = 64) in;
+        layout(scalar, set = 0) readonly buffer Input { float values[]; };
+        layout(scalar, set = 0) buffer Output { float results[]; };
+        layout(push_constant) uniform Push { uint count; float factor; };
+        void main() { uint i = gl_GlobalInvocationID.x; if (i < count) results[i] = factor * values[i]; }
+    )", {{"Input", &in}, {"Output", &out}});
+    CommandList list(device);
+    list.dispatch(kernel, 16, {{"count", 1000u}, {"factor", 3.0f}});
+    KernelTimings timings;
+    list.run(&timings);
+    const auto result = out.read_array<float>(1000);
+    for (int i = 0; i < 1000; ++i) REQUIRE(result[i] == 3.0f * float(i));
+    CHECK(timings.at("scale_input").dispatches == 1);
+}
+
+TEST_CASE("a buffer that the host does not bind is named") {
+    CHECK_THROWS_WITH_AS(make_test_kernel("lonely", "layout(scalar) buffer Missing { float a[]; }; void main() { a[0] = 1.0; }", {}),
+                         "kernel lonely reads buffer Missing, which the host does not bind", Error);
+}
+
+TEST_CASE("a shader error names file and line") {
+    ShaderSources sources;
+    sources.generated["broken.comp"] = "void main() {\n  undefined_name = 1;\n}\n";
+    CHECK_THROWS_WITH_AS(compile_shader(sources, "broken.comp"), "broken.comp:2: 'undefined_name' : undeclared identifier", Error);
+}
