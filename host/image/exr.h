@@ -1,0 +1,16 @@
+// OpenEXR files: every channel of an Image as 32-bit float, ZIP compressed.
+#pragma once
+#include <filesystem>
+
+#include "host/image/image.h"
+
+namespace etendue {
+
+// Atomic: the file is whole, or what stood there before stays.
+void write_exr(const std::filesystem::path& path, const Image& image);
+
+// The data window of the first part, all channels, half and integer ones converted to float; text and number
+// attributes. Fails with one line where the file is missing, damaged, deep, or has subsampled channels.
+Image read_exr(const std::filesystem::path& path);
+
+}  // namespace etendue
