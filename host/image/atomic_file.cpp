@@ -45,14 +45,16 @@ fs::path destination(const fs::path& path) {
 void open_beside(TemporaryFile& file, const fs::path& target, const fs::path& shown) {
     fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
     for (int attempt = 0; attempt < 1000; ++attempt) {
-        fs::path name = folder / fmt::format(".{}-{}-{}", target.filename().string().substr(0, 200), getpid(), attempt);
+        fs::path name =
+            folder / fmt::format(".{}-{}-{}", target.filename().string().substr(0, 200), getpid(), attempt);
         file.descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file.descriptor >= 0) {
             file.path = name;
             return;
         }
         if (errno == EEXIST) continue;
-        if (errno == ENOENT) fail_input("{}: cannot be written: there is no folder {}", shown.string(), folder.string());
+        if (errno == ENOENT)
+            fail_input("{}: cannot be written: there is no folder {}", shown.string(), folder.string());
         fail_writing(shown, errno);
     }
     fail_writing(shown, EEXIST);
@@ -69,7 +71,7 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path&
 
 // The status of what stands at `target`: st_mode is 0 where nothing does.
 struct stat status_of(const fs::path& target, const fs::path& shown) {
-    struct stat status{};
+    struct stat status {};
     if (stat(target.c_str(), &status) != 0) {
         if (errno != ENOENT) fail_writing(shown, errno);
         status.st_mode = 0;
@@ -103,7 +105,8 @@ void write_atomically(const fs::path& path, std::span<const std::byte> bytes) {
     }
     TemporaryFile file;
     open_beside(file, target, path);
-    if (status.st_mode != 0 && fchmod(file.descriptor, status.st_mode & 07777) != 0) fail_writing(path, errno);
+    if (status.st_mode != 0 && fchmod(file.descriptor, status.st_mode & 07777) != 0)
+        fail_writing(path, errno);
     write_all(file.descriptor, bytes, path);
     // Some file systems report a full disk only here.
     if (fsync(file.descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) fail_writing(path, errno);
@@ -115,7 +118,7 @@ void write_atomically(const fs::path& path, std::span<const std::byte> bytes) {
 std::vector<std::byte> read_whole_file(const fs::path& path) {
     TemporaryFile file{.path = {}, .descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC)};
     if (file.descriptor < 0) fail_input("{}: cannot be read: {}", path.string(), std::strerror(errno));
-    struct stat status{};
+    struct stat status {};
     fstat(file.descriptor, &status);
     if (S_ISDIR(status.st_mode)) fail_input("{}: cannot be read: it is a folder", path.string());
     std::vector<std::byte> bytes(S_ISREG(status.st_mode) ? size_t(status.st_size) : 0);

@@ -1,5 +1,5 @@
-// Files that are whole or not there: written beside their place under another name, then renamed over it, so that
-// an interrupted or failed write never costs what stood there before.
+// Files that are whole or not there: written beside their place under another name, then renamed over it, so
+// that an interrupted or failed write never costs what stood there before.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace etendue {
 
-// Fails unless write_atomically(path) can work: a folder that can be written to, no folder at the place itself,
-// no write-protected file. To be called before the work whose result goes there. Leaves no trace.
+// Fails unless write_atomically(path) can work: a folder that can be written to, no folder at the place
+// itself, no write-protected file. To be called before the work whose result goes there. Leaves no trace.
 void check_writable(const std::filesystem::path& path);
 
 // Where `path` is no regular file (a pipe, a terminal) it is written to directly.

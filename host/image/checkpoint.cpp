@@ -29,11 +29,13 @@ void require_identity(const std::string& name, const nlohmann::json& found, cons
     for (const auto& [key, value] : wanted.items()) {
         if (found.contains(key) && found[key] == value) continue;
         std::string was = found.contains(key) ? found[key].dump() : "none";
-        fail_input("{}: this checkpoint is of another render: its {} is {}, now {}", name, key, was, value.dump());
+        fail_input("{}: this checkpoint is of another render: its {} is {}, now {}", name, key, was,
+                   value.dump());
     }
     for (const auto& [key, value] : found.items())
         if (!wanted.contains(key))
-            fail_input("{}: this checkpoint is of another render: its {} is {}, now none", name, key, value.dump());
+            fail_input("{}: this checkpoint is of another render: its {} is {}, now none", name, key,
+                       value.dump());
 }
 
 }  // namespace
@@ -83,7 +85,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const nlohmann::js
     std::vector<std::byte> bytes = read_whole_file(path);
     if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
         fail_input("{}: not a checkpoint of étendue", name);
-    if (bytes.size() < prefix_size + sizeof(uint64_t)) fail_input("{}: damaged: the checkpoint is cut short", name);
+    if (bytes.size() < prefix_size + sizeof(uint64_t))
+        fail_input("{}: damaged: the checkpoint is cut short", name);
     uint32_t version = read_at<uint32_t>(bytes, sizeof magic);
     if (version != format_version)
         fail_input("{}: checkpoint format {}, only {} can be read", name, version, format_version);
@@ -104,7 +107,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const nlohmann::js
             size_t size = entry.at("bytes").get<size_t>();
             if (size > body - offset) fail_input("{}: damaged: an array is longer than the file", name);
             auto first = bytes.begin() + ptrdiff_t(offset);
-            checkpoint.arrays.push_back({entry.at("name").get<std::string>(), {first, first + ptrdiff_t(size)}});
+            checkpoint.arrays.push_back(
+                {entry.at("name").get<std::string>(), {first, first + ptrdiff_t(size)}});
             offset += size;
         }
         if (offset != body) fail_input("{}: damaged: bytes are left behind the last array", name);
@@ -115,8 +119,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& path, const nlohmann::js
     return checkpoint;
 }
 
-const std::vector<std::byte>& checkpoint_array(const Checkpoint& checkpoint, const std::filesystem::path& path,
-                                               const std::string& name, size_t bytes) {
+const std::vector<std::byte>& checkpoint_array(const Checkpoint& checkpoint,
+                                               const std::filesystem::path& path, const std::string& name,
+                                               size_t bytes) {
     for (const CheckpointArray& array : checkpoint.arrays)
         if (array.name == name && array.bytes.size() == bytes) return array.bytes;
     fail_input("{}: the checkpoint has no array '{}' of {} bytes", path.string(), name, bytes);

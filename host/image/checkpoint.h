@@ -1,8 +1,10 @@
-// Checkpoints: the state of a film between two passes, so that a later run goes on bit for bit where one stopped.
+// Checkpoints: the state of a film between two passes, so that a later run goes on bit for bit where one
+// stopped.
 //
-// File: the magic "ETDFILM\0", a format version (uint32) and the length of the header (uint32), the header as JSON
-// {"identity", "passes", "counters", "arrays": [{"name", "bytes"}]}, the arrays one after the other, and a hash of
-// all before it (uint64). Little-endian. Written atomically.
+// File: the magic "ETDFILM\0", a format version (uint32) and the length of the header (uint32), the header as
+// JSON
+// {"identity", "passes", "counters", "arrays": [{"name", "bytes"}]}, the arrays one after the other, and a
+// hash of all before it (uint64). Little-endian. Written atomically.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -30,13 +32,14 @@ struct Checkpoint {
 
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint);
 
-// Fails with one line where the file is missing, damaged, of another version, or belongs to something else than
-// `identity` (naming the first entry that differs).
+// Fails with one line where the file is missing, damaged, of another version, or belongs to something else
+// than `identity` (naming the first entry that differs).
 Checkpoint read_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity);
 
 // The array of that name with exactly that many bytes; fails with one line where the checkpoint has none.
-const std::vector<std::byte>& checkpoint_array(const Checkpoint& checkpoint, const std::filesystem::path& path,
-                                               const std::string& name, size_t bytes);
+const std::vector<std::byte>& checkpoint_array(const Checkpoint& checkpoint,
+                                               const std::filesystem::path& path, const std::string& name,
+                                               size_t bytes);
 
 // 64-bit hash of bytes, not cryptographic (FNV-1a over 8 bytes a step, finished as in MurmurHash3). Chain by
 // passing the hash of what came before as `start`.

@@ -108,9 +108,9 @@ Comparison compare_images(const Image& image, const Image& reference, const std:
     result.rmse = std::sqrt(sum_squared / count);
 
     size_t kept = std::min(worst_pixels, ranking.size());
-    std::partial_sort(ranking.begin(), ranking.begin() + ptrdiff_t(kept), ranking.end(), [](auto& l, auto& r) {
-        return l.first != r.first ? l.first > r.first : l.second < r.second;
-    });
+    std::partial_sort(
+        ranking.begin(), ranking.begin() + ptrdiff_t(kept), ranking.end(),
+        [](auto& l, auto& r) { return l.first != r.first ? l.first > r.first : l.second < r.second; });
     for (size_t i = 0; i < kept && ranking[i].first > 0; ++i) {
         size_t p = ranking[i].second;
         result.worst.push_back({uint32_t(p % image.width), uint32_t(p / image.width), ranking[i].first,

@@ -1,6 +1,7 @@
 // How far an image is from its reference.
 //
-// `image` is I and `reference` R below. Pixels that are not finite in either are left out of every mean and counted.
+// `image` is I and `reference` R below. Pixels that are not finite in either are left out of every mean and
+// counted.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,22 +12,22 @@
 namespace etendue {
 
 struct PixelDifference {
-    uint32_t x = 0, y = 0;                     // from the left, from the top
-    double relative_squared = 0;               // this pixel's term of relMSE, averaged over channels
-    std::vector<float> image, reference;       // values in the order of Comparison::channels
+    uint32_t x = 0, y = 0;                // from the left, from the top
+    double relative_squared = 0;          // this pixel's term of relMSE, averaged over channels
+    std::vector<float> image, reference;  // values in the order of Comparison::channels
 };
 
-// Do the two images differ by more than their noise? z = (I - R) / sqrt(error_I² + error_R²) for every value. The
-// largest |z| of n independent values of equal mean stays below the limit with probability 1 - alpha (Šidák 1967).
-// Errors estimated from few passes make tails heavier than Gaussian: where the images say how many passes they have,
-// p-values are Student's, with degrees of freedom after Welch (1947).
+// Do the two images differ by more than their noise? z = (I - R) / sqrt(error_I² + error_R²) for every value.
+// The largest |z| of n independent values of equal mean stays below the limit with probability 1 - alpha
+// (Šidák 1967). Errors estimated from few passes make tails heavier than Gaussian: where the images say how
+// many passes they have, p-values are Student's, with degrees of freedom after Welch (1947).
 struct ZTest {
     size_t tests = 0;
-    double max_z = 0;            // largest |z|
-    uint32_t x = 0, y = 0;       // where it is (the tile's first pixel)
-    double beyond_3 = 0;         // fraction of |z| > 3; 0.0027 is expected of Gaussian noise
-    double p_value = 1;          // of the least probable value
-    double p_limit = 0;          // passes where p_value >= p_limit
+    double max_z = 0;       // largest |z|
+    uint32_t x = 0, y = 0;  // where it is (the tile's first pixel)
+    double beyond_3 = 0;    // fraction of |z| > 3; 0.0027 is expected of Gaussian noise
+    double p_value = 1;     // of the least probable value
+    double p_limit = 0;     // passes where p_value >= p_limit
     bool passes = true;
 };
 
@@ -39,18 +40,18 @@ struct Comparison {
     std::vector<double> channel_bias;    // the same for each channel
     std::vector<PixelDifference> worst;  // worst first
     size_t nonfinite_image = 0, nonfinite_reference = 0;  // pixels
-    std::optional<ZTest> z_test;         // where both images have an error layer
+    std::optional<ZTest> z_test;                          // where both images have an error layer
 };
 
-// Compares R, G, B where both have them, else all channels but A and the layers of --aovs. Fails with one line where
-// sizes or channels differ. The names stand in messages.
+// Compares R, G, B where both have them, else all channels but A and the layers of --aovs. Fails with one
+// line where sizes or channels differ. The names stand in messages.
 Comparison compare_images(const Image& image, const Image& reference, const std::string& image_name = "image",
                           const std::string& reference_name = "reference", size_t worst_pixels = 5);
 
-// The test over means of tiles of tile * tile pixels, which sees small differences that many pixels share. nullopt
-// where an image lacks the error layer of a channel.
-std::optional<ZTest> z_test(const Image& image, const Image& reference, const std::vector<std::string>& channels,
-                            uint32_t tile = 1, double alpha = 0.01);
+// The test over means of tiles of tile * tile pixels, which sees small differences that many pixels share.
+// nullopt where an image lacks the error layer of a channel.
+std::optional<ZTest> z_test(const Image& image, const Image& reference,
+                            const std::vector<std::string>& channels, uint32_t tile = 1, double alpha = 0.01);
 
 // P(|T| > t) for Student's t with `dof` degrees of freedom; an infinite dof gives the normal distribution.
 double student_two_sided(double t, double dof);

@@ -43,7 +43,8 @@ class MemoryOutput : public Imf::OStream {
 
 class MemoryInput : public Imf::IStream {
   public:
-    MemoryInput(const std::string& name, std::span<const std::byte> bytes) : Imf::IStream(name.c_str()), bytes_(bytes) {}
+    MemoryInput(const std::string& name, std::span<const std::byte> bytes)
+        : Imf::IStream(name.c_str()), bytes_(bytes) {}
     bool read(char data[], int count) override {
         if (count < 0 || position_ > bytes_.size() || uint64_t(count) > bytes_.size() - position_)
             throw std::runtime_error("the file ends too early");
@@ -94,13 +95,14 @@ Image read_image(Imf::InputFile& file, const std::string& name) {
     image.attributes = read_attributes(header);
     for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
         if (i.channel().xSampling != 1 || i.channel().ySampling != 1)
-            fail_input("{}: channel {} is subsampled; all channels must have the size of the image", name, i.name());
+            fail_input("{}: channel {} is subsampled; all channels must have the size of the image", name,
+                       i.name());
         image.channels.push_back(i.name());
     }
     if (image.channels.empty()) fail_input("{}: the image has no channels", name);
     if (width > max_values || height > max_values || width * height > max_values / image.channels.size())
-        fail_input("{}: {} x {} pixels of {} channels: more than the {} values that can be read", name, width, height,
-                   image.channels.size(), max_values);
+        fail_input("{}: {} x {} pixels of {} channels: more than the {} values that can be read", name, width,
+                   height, image.channels.size(), max_values);
     image.width = uint32_t(width), image.height = uint32_t(height);
     image.values.resize(pixel_count(image) * image.channels.size());
 

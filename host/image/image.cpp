@@ -18,7 +18,8 @@ std::span<const float> plane(const Image& image, size_t channel) {
     return std::span(image.values).subspan(channel * pixel_count(image), pixel_count(image));
 }
 
-void add_channels(Image& image, const std::vector<std::string>& names, std::span<const float> pixels, size_t stride) {
+void add_channels(Image& image, const std::vector<std::string>& names, std::span<const float> pixels,
+                  size_t stride) {
     size_t count = pixel_count(image);
     if (names.size() > stride || pixels.size() < count * stride)
         throw std::logic_error("add_channels: fewer floats than the image has pixels");

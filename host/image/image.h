@@ -1,7 +1,7 @@
 // An image in memory: named float channels, rows from the top, with the attributes that travel with it.
 //
-// Channel names follow OpenEXR: the image itself is R, G, B; a layer's channels carry its name and a dot, as in
-// albedo.R, normal.X, depth.Z, error.R.
+// Channel names follow OpenEXR: the image itself is R, G, B; a layer's channels carry its name and a dot, as
+// in albedo.R, normal.X, depth.Z, error.R.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -31,11 +31,13 @@ int find_channel(const Image& image, std::string_view name);
 std::span<float> plane(Image& image, size_t channel);
 std::span<const float> plane(const Image& image, size_t channel);
 
-// Adds one channel a name, taken from pixels of `stride` floats each (4 for an array of vec4); what stands beyond
-// the names in a pixel is left out.
-void add_channels(Image& image, const std::vector<std::string>& names, std::span<const float> pixels, size_t stride);
+// Adds one channel a name, taken from pixels of `stride` floats each (4 for an array of vec4); what stands
+// beyond the names in a pixel is left out.
+void add_channels(Image& image, const std::vector<std::string>& names, std::span<const float> pixels,
+                  size_t stride);
 
-// The channels that show the picture: R, G, B where there are all three, else Y or the first channel three times.
+// The channels that show the picture: R, G, B where there are all three, else Y or the first channel three
+// times.
 std::array<size_t, 3> picture_channels(const Image& image);
 
 }  // namespace etendue

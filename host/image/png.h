@@ -6,8 +6,8 @@
 
 namespace etendue {
 
-// The picture times 2^exposure, clipped to [0, 1] and encoded as sRGB (IEC 61966-2-1). Pixels that are not finite
-// show as magenta.
+// The picture times 2^exposure, clipped to [0, 1] and encoded as sRGB (IEC 61966-2-1). Pixels that are not
+// finite show as magenta.
 void write_png(const std::filesystem::path& path, const Image& image, float exposure = 0.0f);
 
 }  // namespace etendue

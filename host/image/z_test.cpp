@@ -27,7 +27,8 @@ double beta_fraction(double a, double b, double x) {
 double incomplete_beta(double a, double b, double x) {
     if (x <= 0) return 0;
     if (x >= 1) return 1;
-    double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
+    double front =
+        std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x));
     return x < (a + 1) / (a + b + 2) ? front * beta_fraction(a, b, x) / a
                                      : 1 - front * beta_fraction(b, a, 1 - x) / b;
 }
@@ -41,9 +42,9 @@ double error_dof(const Image& image) {
 }
 
 struct TileMean {
-    double difference = 0;        // mean(I) - mean(R)
-    double variance = 0;          // of the difference
-    double weighted_variance = 0; // sum of the variances' squares over their degrees of freedom (Welch 1947)
+    double difference = 0;         // mean(I) - mean(R)
+    double variance = 0;           // of the difference
+    double weighted_variance = 0;  // sum of the variances' squares over their degrees of freedom (Welch 1947)
     double magnitude = 0;
     bool finite = true;
 };
@@ -57,18 +58,19 @@ double student_two_sided(double t, double dof) {
     return incomplete_beta(0.5 * dof, 0.5, dof / (dof + t * t));
 }
 
-std::optional<ZTest> z_test(const Image& image, const Image& reference, const std::vector<std::string>& channels,
-                            uint32_t tile, double alpha) {
+std::optional<ZTest> z_test(const Image& image, const Image& reference,
+                            const std::vector<std::string>& channels, uint32_t tile, double alpha) {
     struct Channel {
         std::span<const float> a, b, error_a, error_b;
     };
     std::vector<Channel> selected;
     for (const std::string& name : channels) {
         int a = find_channel(image, name), b = find_channel(reference, name);
-        int error_a = find_channel(image, "error." + name), error_b = find_channel(reference, "error." + name);
+        int error_a = find_channel(image, "error." + name),
+            error_b = find_channel(reference, "error." + name);
         if (a < 0 || b < 0 || error_a < 0 || error_b < 0) return std::nullopt;
-        selected.push_back({plane(image, size_t(a)), plane(reference, size_t(b)), plane(image, size_t(error_a)),
-                            plane(reference, size_t(error_b))});
+        selected.push_back({plane(image, size_t(a)), plane(reference, size_t(b)),
+                            plane(image, size_t(error_a)), plane(reference, size_t(error_b))});
     }
     double dof_a = error_dof(image), dof_b = error_dof(reference);
 
@@ -81,7 +83,8 @@ std::optional<ZTest> z_test(const Image& image, const Image& reference, const st
                 double a = channel.a[p], b = channel.b[p];
                 double va = double(channel.error_a[p]) * channel.error_a[p];
                 double vb = double(channel.error_b[p]) * channel.error_b[p];
-                mean.difference += a - b, mean.variance += va + vb, mean.magnitude += std::abs(a) + std::abs(b);
+                mean.difference += a - b, mean.variance += va + vb,
+                    mean.magnitude += std::abs(a) + std::abs(b);
                 mean.weighted_variance += va * va / dof_a + vb * vb / dof_b;
                 mean.finite = mean.finite && std::isfinite(a) && std::isfinite(b) && std::isfinite(va + vb);
                 count += 1;
@@ -103,8 +106,9 @@ std::optional<ZTest> z_test(const Image& image, const Image& reference, const st
                 double rounding = 1e-6 * mean.magnitude;
                 double sigma = std::sqrt(mean.variance + rounding * rounding);
                 double z = mean.difference == 0 ? 0 : std::abs(mean.difference) / sigma;
-                double dof = mean.weighted_variance > 0 ? mean.variance * mean.variance / mean.weighted_variance
-                                                        : std::numeric_limits<double>::infinity();
+                double dof = mean.weighted_variance > 0
+                                 ? mean.variance * mean.variance / mean.weighted_variance
+                                 : std::numeric_limits<double>::infinity();
                 ++result.tests;
                 beyond += z > 3;
                 if (z > result.max_z) result.max_z = z, result.x = x, result.y = y;

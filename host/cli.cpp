@@ -1,0 +1,259 @@
+#include "host/cli.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+
+#include "host/error.h"
+
+#ifndef ETENDUE_VERSION
+#define ETENDUE_VERSION "unknown"
+#endif
+
+namespace etendue {
+namespace {
+
+const char* overview =
+    "Exit codes: 0 done, 1 a comparison failed, 2 bad usage or bad scene, 3 no usable device or the device "
+    "failed,\n"
+    "130 interrupted (the image so far is written).";
+
+// Arguments as text; CLI11's own conversions take NaN, hexadecimal and trailing characters for numbers.
+struct RenderArguments {
+    std::string passes, seconds, error, size, seed = "0", algorithm = "auto", color = "auto",
+                                              polarization = "auto";
+};
+
+uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most) {
+    uint64_t value = 0;
+    auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc() || end != text.data() + text.size() || value < least || value > most)
+        fail_input("{} {}: must be a whole number from {} to {}", option, text, least, most);
+    return value;
+}
+
+double parse_positive(const std::string& text, const char* option, const char* unit) {
+    double value = 0;
+    auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc() || end != text.data() + text.size() || !(value > 0) || !std::isfinite(value))
+        fail_input("{} {}: must be a number above 0{}", option, text, unit);
+    return value;
+}
+
+ImageSize parse_size(const std::string& text) {
+    size_t cross = text.find_first_of("xX");
+    if (cross == std::string::npos)
+        fail_input("--size {}: must be WIDTHxHEIGHT in pixels, as in 640x480", text);
+    return {uint32_t(parse_count(text.substr(0, cross), "--size, width", 1, 65536)),
+            uint32_t(parse_count(text.substr(cross + 1), "--size, height", 1, 65536))};
+}
+
+template <class Choice>
+Choice parse_choice(const std::string& text, const char* option,
+                    std::initializer_list<std::pair<const char*, Choice>> choices) {
+    std::string allowed;
+    for (const auto& [name, value] : choices) {
+        if (text == name) return value;
+        allowed += allowed.empty() ? name : std::string(", ") + name;
+    }
+    fail_input("{} {}: not available; allowed: {}", option, text, allowed);
+}
+
+std::string quoted_command(int argc, const char* const* argv) {
+    std::string line = "etendue";
+    for (int i = 1; i < argc; ++i) {
+        std::string word = argv[i];
+        bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$&|;<>()*?[]#~`!{}") == std::string::npos;
+        line += plain ? " " + word : " '" + word + "'";
+    }
+    return line;
+}
+
+CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arguments) {
+    CLI::App* render = app.add_subcommand("render", "Render a glTF scene to an OpenEXR image");
+    render->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
+    render
+        ->add_option("-o,--output", options.output,
+                     "Image to write (default: the scene's name with .exr, here)")
+        ->option_text("OUT.exr");
+    auto* passes =
+        render->add_option("--passes", arguments.passes, "Stop after N passes: paths a pixel (default: 64)");
+    auto* seconds =
+        render->add_option("--time", arguments.seconds, "Stop after that many seconds of rendering");
+    auto* error =
+        render->add_option("--error", arguments.error,
+                           "Stop when the estimated error (standard error of the mean, relative) is E");
+    passes->option_text("N")->excludes(seconds)->excludes(error);
+    seconds->option_text("SEC")->excludes(error);
+    error->option_text("E");
+    render
+        ->add_option("--size", arguments.size,
+                     "Size in pixels (default: 512 rows, columns by the camera's aspect)")
+        ->option_text("WxH");
+    render->add_option("--receiver", options.receiver, "Camera to render (default: the scene's first)")
+        ->option_text("NAME");
+    render
+        ->add_option("--environment", options.environment,
+                     "Latitude-longitude image for the scene's surroundings")
+        ->option_text("FILE.hdr|exr");
+    render->add_option("--algorithm", arguments.algorithm, "How light is traced (default: auto)")
+        ->option_text("auto|backward");
+    render->add_option("--color", arguments.color, "What a ray carries (default: auto)")
+        ->option_text("auto|rgb");
+    render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
+        ->option_text("auto|off");
+    render->add_option("--seed", arguments.seed, "Seed of the random numbers (default: 0)")->option_text("N");
+    render->add_option("--device", options.device, "Vulkan device (default: the best; see: etendue devices)")
+        ->option_text("NAME|INDEX");
+    render
+        ->add_option("--checkpoint", options.checkpoint, "Keep the state there, to go on from with --resume")
+        ->option_text("FILE");
+    render->add_option("--resume", options.resume, "Go on from a checkpoint of the same scene and settings")
+        ->option_text("FILE");
+    render->add_option("--stats", options.stats, "Write counts, timings and the power balance there")
+        ->option_text("FILE.json");
+    render
+        ->add_option("--shaders", options.shaders, "Read the shaders from a folder (default: those built in)")
+        ->option_text("DIR");
+    render->add_flag("--aovs", options.aovs, "Also write the layers albedo, normal, depth and error");
+    render->add_flag("-q,--quiet", options.quiet, "No progress and no warnings");
+    return render;
+}
+
+void finish_render(RenderOptions& options, const RenderArguments& arguments, std::string command_line) {
+    if (options.scene.empty()) fail_input("SCENE is empty (see etendue render --help)");
+    if (!arguments.passes.empty())
+        options.passes = parse_count(arguments.passes, "--passes", 1, uint64_t(1) << 31);
+    else if (!arguments.seconds.empty())
+        options.seconds = parse_positive(arguments.seconds, "--time", ", in seconds");
+    else if (!arguments.error.empty())
+        options.error = parse_positive(arguments.error, "--error", "");
+    else
+        options.passes = 64;
+    if (!arguments.size.empty()) options.size = parse_size(arguments.size);
+    options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
+    options.algorithm =
+        parse_choice<Algorithm>(arguments.algorithm, "--algorithm",
+                                {{"auto", Algorithm::automatic}, {"backward", Algorithm::backward}});
+    options.color = parse_choice<ColorMode>(arguments.color, "--color",
+                                            {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}});
+    options.polarization = parse_choice<PolarizationMode>(
+        arguments.polarization, "--polarization",
+        {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});
+    if (options.output.empty()) options.output = default_output(options.scene);
+    if (options.output.extension() != ".exr")
+        fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
+                   options.output.string());
+    options.command_line = std::move(command_line);
+}
+
+CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::string& max_relmse) {
+    CLI::App* compare =
+        app.add_subcommand("compare", "Compare an image with a reference: relMSE, RMSE, bias, worst pixels");
+    compare->add_option("A.exr", options.image, "Image")->required()->option_text(" ");
+    compare->add_option("B.exr", options.reference, "Reference of the same size")
+        ->required()
+        ->option_text(" ");
+    compare->add_option("--max-relmse", max_relmse, "Exit with 1 where relMSE is above X or not finite")
+        ->option_text("X");
+    compare->footer(
+        "relMSE = mean((A-B)² / (B² + 0.01 mean(B)²)) over pixels and channels. Where both images have an "
+        "error\n"
+        "layer (render --aovs), a z-test tells whether they differ by more than their noise.");
+    return compare;
+}
+
+CLI::App* add_inspect(CLI::App& app, InspectOptions& options) {
+    CLI::App* inspect =
+        app.add_subcommand("inspect", "Objects, classes, features, kernels and memory of a scene");
+    inspect->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
+    inspect->add_option("--receiver", options.receiver, "Camera (default: the scene's first)")
+        ->option_text("NAME");
+    inspect->add_option("--environment", options.environment, "As for render")->option_text("FILE.hdr|exr");
+    inspect->add_option("--device", options.device, "As for render")->option_text("NAME|INDEX");
+    inspect->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    return inspect;
+}
+
+CLI::App* add_classes(CLI::App& app, ClassesOptions& options) {
+    CLI::App* classes =
+        app.add_subcommand("classes", "Registered classes, their parameters, units, defaults and ranges");
+    classes->add_option("NAME", options.name, "Only this class")->option_text(" ");
+    classes->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    return classes;
+}
+
+// CLI11 calls a missing value by its type's name.
+std::string readable(std::string message) {
+    if (size_t at = message.find("required TEXT missing"); at != std::string::npos)
+        message.replace(at, std::string::npos, "value is missing");
+    return message;
+}
+
+}  // namespace
+
+std::filesystem::path default_output(const std::filesystem::path& scene) {
+    return scene.filename().replace_extension(".exr");
+}
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+    CLI::App app("étendue: a physically accurate renderer and lighting simulator", "etendue");
+    app.set_version_flag("-v,--version", "etendue " ETENDUE_VERSION);
+    app.set_help_flag("-h,--help", "Print this help and exit");
+    app.footer(overview);
+    app.require_subcommand(0, 1);
+    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+
+    RenderOptions render_options;
+    RenderArguments render_arguments;
+    CompareOptions compare_options;
+    std::string max_relmse;
+    InspectOptions inspect_options;
+    ClassesOptions classes_options;
+    CLI::App* render = add_render(app, render_options, render_arguments);
+    CLI::App* compare = add_compare(app, compare_options, max_relmse);
+    CLI::App* inspect = add_inspect(app, inspect_options);
+    CLI::App* classes = add_classes(app, classes_options);
+    CLI::App* devices =
+        app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
+
+    const auto commands = {render, compare, inspect, classes, devices};
+    std::string first = argc < 2 ? "" : argv[1];
+    bool known = first.starts_with("-");
+    for (CLI::App* command : commands) known = known || first == command->get_name();
+    if (!known)
+        fail_input("{}; one of: render, compare, inspect, classes, devices (see etendue --help)",
+                   argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
+
+    CLI::App* chosen = &app;
+    auto command_name = [&] {
+        for (CLI::App* command : commands)
+            if (command->parsed()) chosen = command;
+        return chosen == &app ? std::string("etendue") : "etendue " + chosen->get_name();
+    };
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        command_name();
+        return TextAnswer{chosen->help(chosen == &app ? "" : "etendue", CLI::AppFormatMode::Normal)};
+    } catch (const CLI::CallForVersion& version) {
+        return TextAnswer{std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& e) {
+        std::string name = command_name();
+        fail_input("{} (see {} --help)", readable(e.what()), name);
+    }
+    if (render->parsed()) {
+        finish_render(render_options, render_arguments, quoted_command(argc, argv));
+        return render_options;
+    }
+    if (compare->parsed()) {
+        if (!max_relmse.empty()) compare_options.max_relmse = parse_positive(max_relmse, "--max-relmse", "");
+        return compare_options;
+    }
+    if (inspect->parsed()) return inspect_options;
+    if (classes->parsed()) return classes_options;
+    if (devices->parsed()) return DevicesOptions{};
+    fail_input("no command given (see etendue --help)");
+}
+
+}  // namespace etendue

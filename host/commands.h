@@ -1,0 +1,59 @@
+// The commands of the executable. The command line (cli.h) fills their options; each returns the exit code.
+// Errors leave as Error (host/error.h).
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace etendue {
+
+enum class Algorithm { automatic, backward };
+enum class ColorMode { automatic, rgb };
+enum class PolarizationMode { automatic, off };
+
+struct ImageSize {
+    uint32_t width = 0, height = 0;
+};
+
+struct RenderOptions {
+    std::filesystem::path scene;
+    std::filesystem::path output;    // never empty; default_output(scene) where none was given
+    std::optional<uint64_t> passes;  // exactly one of the three goals is set; 64 passes by default
+    std::optional<double> seconds, error;
+    std::optional<ImageSize> size;      // else 512 rows, and columns by the camera's aspect ratio
+    std::string receiver;               // name; empty = the first of the scene
+    std::filesystem::path environment;  // image that takes the place of the scene's environment; may be empty
+    Algorithm algorithm = Algorithm::automatic;
+    ColorMode color = ColorMode::automatic;
+    PolarizationMode polarization = PolarizationMode::automatic;
+    uint64_t seed = 0;
+    std::string device;  // name, part of one, or index; empty = the best there is
+    std::filesystem::path checkpoint, resume, stats;  // empty = none
+    bool aovs = false, quiet = false;
+    std::filesystem::path shaders;  // empty = those in the binary
+    std::string command_line;       // as typed, for the image's attributes
+};
+
+struct CompareOptions {
+    std::filesystem::path image, reference;
+    std::optional<double> max_relmse;
+};
+
+struct InspectOptions {
+    std::filesystem::path scene, environment, shaders;
+    std::string receiver, device;
+};
+
+struct ClassesOptions {
+    std::string name;  // empty = all
+    std::filesystem::path shaders;
+};
+
+int render_command(const RenderOptions& options);
+int compare_command(const CompareOptions& options);
+int inspect_command(const InspectOptions& options);
+int classes_command(const ClassesOptions& options);
+int devices_command();
+
+}  // namespace etendue

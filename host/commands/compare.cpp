@@ -1,0 +1,58 @@
+// etendue compare: two images, in numbers.
+#include "host/image/compare.h"
+
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "host/commands.h"
+#include "host/error.h"
+#include "host/image/exr.h"
+
+namespace etendue {
+namespace {
+
+void print_z_test(const ZTest& test) {
+    fmt::print("z-test    {}: {:.2f} % of |z| beyond 3 (0.27 % expected), largest {:.2f} at ({}, {})\n",
+               test.passes ? "equal within noise" : "DIFFERENT", 100 * test.beyond_3, test.max_z, test.x,
+               test.y);
+    fmt::print("          least p {:.3g}, limit {:.3g} for {} tests (Šidák, 1 % false alarms)\n",
+               test.p_value, test.p_limit, test.tests);
+}
+
+void print_comparison(const CompareOptions& options, const Comparison& comparison) {
+    fmt::print("image     {}\nreference {}\n", options.image.string(), options.reference.string());
+    fmt::print("size      {} x {}, channels {}\n", comparison.width, comparison.height,
+               fmt::join(comparison.channels, " "));
+    fmt::print("relMSE    {:.6g}\nRMSE      {:.6g}\n", comparison.relmse, comparison.rmse);
+    fmt::print("bias      {:+.4f} %", 100 * comparison.bias);
+    for (size_t c = 0; c < comparison.channels.size(); ++c)
+        fmt::print("  {} {:+.4f} %", comparison.channels[c], 100 * comparison.channel_bias[c]);
+    fmt::print("\n");
+    if (comparison.z_test) print_z_test(*comparison.z_test);
+    for (const PixelDifference& pixel : comparison.worst)
+        fmt::print("worst     ({}, {})  {:.4g}  image {:.5g}  reference {:.5g}\n", pixel.x, pixel.y,
+                   pixel.relative_squared, fmt::join(pixel.image, " "), fmt::join(pixel.reference, " "));
+    fmt::print("nonfinite {} pixels in the image, {} in the reference{}\n", comparison.nonfinite_image,
+               comparison.nonfinite_reference,
+               comparison.nonfinite_image + comparison.nonfinite_reference ? " (left out of the rest)" : "");
+}
+
+}  // namespace
+
+int compare_command(const CompareOptions& options) {
+    Image image = read_exr(options.image), reference = read_exr(options.reference);
+    Comparison comparison =
+        compare_images(image, reference, options.image.string(), options.reference.string());
+    print_comparison(options, comparison);
+    if (!options.max_relmse) return int(ExitCode::done);
+    bool finite = comparison.nonfinite_image == 0 && comparison.nonfinite_reference == 0;
+    bool passes = finite && comparison.relmse <= *options.max_relmse;
+    fmt::print("limit     {:.6g}: {}\n", *options.max_relmse,
+               passes   ? "kept"
+               : finite ? "EXCEEDED"
+                        : "FAILED, not all pixels are finite");
+    return int(passes ? ExitCode::done : ExitCode::target_failed);
+}
+
+}  // namespace etendue
