@@ -1,0 +1,43 @@
+// find_hits: the nearest hit of every ray of a queue.
+// Reads: ray_origins (xyz), ray_directions (xyz, w = t_max), and with HAS_RAY_QUEUE the queue of ray indices.
+// Writes: hits (t, uv, primitive), and with HAS_INSTANCES hit_instances. No barrier.
+// Each lane walks one ray after the other, statically strided, so that lanes whose rays are short stay at work.
+#include "lib/traversal.glsl"
+
+#ifndef ANY_HIT
+#define ANY_HIT 0
+#endif
+
+layout(local_size_x = 64) in;
+
+layout(scalar) readonly buffer RayOrigins { vec4 ray_origins[]; };
+layout(scalar) readonly buffer RayDirections { vec4 ray_directions[]; };
+layout(scalar) writeonly buffer Hits { vec4 hits[]; };
+#if HAS_INSTANCES
+layout(scalar) writeonly buffer HitInstances { uint hit_instances[]; };
+#endif
+layout(push_constant, scalar) uniform Arguments { uint ray_count; };
+
+void main() {
+    uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint next = gl_GlobalInvocationID.x;
+    uint ray = NO_RECORD;
+    Traversal walk;
+    walk.node = BVH_NOTHING;
+    for (;;) {
+        if (walk.node == BVH_NOTHING) {
+            if (ray != NO_RECORD) {
+                hits[ray] = vec4(walk.hit.t, walk.hit.uv, uintBitsToFloat(walk.hit.primitive));
+#if HAS_INSTANCES
+                hit_instances[ray] = walk.hit.instance;
+#endif
+            }
+            if (next >= ray_count) break;
+            ray = next;
+            next += stride;
+            vec4 direction = ray_directions[ray];
+            traversal_begin(walk, ray_origins[ray].xyz, direction.xyz, direction.w);
+        }
+        traversal_step(walk, ANY_HIT == 1);
+    }
+}

@@ -1,0 +1,124 @@
+// Layout of the hierarchies that the host builds (host/scene/bvh.h), and the test of a node's two boxes.
+//
+// node_at(i) is an entry (uvec4) of the `nodes` buffer. A tree starts with a header of two entries:
+//     lower corner of its grid (float bits), reference of the root | cells per metre, largest extent in m (float bits)
+// then inner nodes, two entries each, one a child: bounds along x, y, z (low half: lower bound, high half: upper
+// bound, in cells of the grid, rounded outward), reference of the child. With HAS_FLOAT_NODES four entries: for
+// each child its lower corner and reference, its upper corner.
+// A reference is the entry of an inner node, or a leaf: bit 31, count - 1 in bits 29 and 30, first primitive.
+//
+// primitive_at(i) is an entry of `primitives`, struct Triangle. Its attributes' upper two bits are the kind:
+//     triangle   the vertices; index = its place in the mesh's lists of vertex indices
+//     shape      v0.x RecordRef of the geometry, v0.y index of its transform (bits)
+//     instance   v0.x header of the mesh's own tree, v0.y index of its transform (bits)
+#include "lib/constants.glsl"
+#include "lib/records.glsl"
+#include "lib/warps.glsl"
+#include "interfaces/geometry.glsl"
+#include "geometry/triangle.glsl"
+
+// How entries are fetched may be set before this file is included.
+#ifndef node_at
+layout(scalar) readonly buffer Nodes { uvec4 nodes[]; };
+#define node_at(i) nodes[i]
+#endif
+#ifndef primitive_at
+layout(scalar) readonly buffer Primitives { Triangle primitives[]; };
+#define primitive_at(i) primitives[i]
+#endif
+
+const uint BVH_LEAF = 0x80000000u;
+const uint BVH_FIRST_MASK = 0x1FFFFFFFu;
+const uint BVH_COUNT_MASK = 0x60000000u;
+const uint BVH_COUNT_ONE = 0x20000000u;
+const uint BVH_NOTHING = 0xFFFFFFFEu;  // no reference: nothing left to visit
+const uint BVH_RETURN = 0xFFFFFFFFu;   // on the stack: the instance is done, go on in world space
+
+const uint KIND_TRIANGLE = 0u;
+const uint KIND_SHAPE = 1u;
+const uint KIND_INSTANCE = 2u;
+uint attributes_kind(uint attributes) { return attributes >> 30; }
+uint attributes_index(uint attributes) { return attributes & 0x3FFFFFFFu; }
+
+// An affine map and its inverse, each rounded from doubles.
+struct Transform {
+    mat4x3 world_from_local;
+    mat4x3 local_from_world;
+};
+#ifndef transform_at
+layout(scalar) readonly buffer Transforms { Transform transforms[]; };
+#define transform_at(i) transforms[i]
+#endif
+
+float max_component3(vec3 v) { return max(max(v.x, v.y), v.z); }
+float min_component3(vec3 v) { return min(min(v.x, v.y), v.z); }
+
+// A ray as boxes see it: in cells of the tree's grid, started where it enters the grid, `start` along the ray.
+// The planes it meets first are tested from near_origin, those it leaves by from far_origin: they differ by a bound
+// of all rounding, that of the primitives' tests included, so no box is missed whose primitive would be hit.
+struct BoxRay {
+    vec3 near_origin, far_origin, inverse;
+    uvec3 near_shift;  // 16 where the ray runs down the axis: picks the upper bound as the first plane
+    float start;
+};
+
+BoxRay box_ray(uint header, vec3 origin, vec3 direction) {
+    uvec4 first = node_at(header), second = node_at(header + 1u);
+    vec3 from_lo = origin - uintBitsToFloat(first.xyz);
+    float extent = uintBitsToFloat(second.w);
+#if HAS_FLOAT_NODES
+    vec3 cells = vec3(1.0);
+    vec3 o = origin;
+#else
+    vec3 cells = uintBitsToFloat(second.xyz);
+    vec3 o = from_lo * cells;
+#endif
+    vec3 d = direction * cells;
+    d = mix(d, vec3(1e-25), lessThan(abs(d), vec3(1e-25)));  // finite inverse: 0 * infinity never comes up
+    BoxRay ray;
+    ray.inverse = 1.0 / d;
+#if HAS_FLOAT_NODES
+    ray.start = 0.0;
+#else
+    vec3 enter = (mix(vec3(0.0), vec3(65536.0), lessThan(d, vec3(0.0))) - o) * ray.inverse;
+    ray.start = clamp(max_component3(enter), 0.0, INFINITY);
+#endif
+    vec3 step = ray.start * d;
+    float reach = max_component3(abs(from_lo) + abs(ray.start * direction)) + extent;
+    vec3 margin = gamma(8.0) * reach * cells;
+    margin = mix(margin, -margin, lessThan(d, vec3(0.0)));
+    ray.near_origin = o + step + margin;
+    ray.far_origin = o + step - margin;
+    ray.near_shift = mix(uvec3(0u), uvec3(16u), lessThan(d, vec3(0.0)));
+    return ray;
+}
+
+#if HAS_FLOAT_NODES
+void meet_boxes(BoxRay ray, uint i, float limit, out vec2 near, out vec2 far, out uvec2 child) {
+    uvec4 l0 = node_at(i), h0 = node_at(i + 1u), l1 = node_at(i + 2u), h1 = node_at(i + 3u);
+    bvec3 down = notEqual(ray.near_shift, uvec3(0u));
+    vec3 n0 = (uintBitsToFloat(mix(l0.xyz, h0.xyz, down)) - ray.near_origin) * ray.inverse;
+    vec3 f0 = (uintBitsToFloat(mix(h0.xyz, l0.xyz, down)) - ray.far_origin) * ray.inverse;
+    vec3 n1 = (uintBitsToFloat(mix(l1.xyz, h1.xyz, down)) - ray.near_origin) * ray.inverse;
+    vec3 f1 = (uintBitsToFloat(mix(h1.xyz, l1.xyz, down)) - ray.far_origin) * ray.inverse;
+    const float widen = 1.0 + 8.0 * EPSILON;
+    near = vec2(max(max(n0.x, n0.y), max(n0.z, 0.0)), max(max(n1.x, n1.y), max(n1.z, 0.0)));
+    far = vec2(min(min_component3(f0) * widen, limit), min(min_component3(f1) * widen, limit));
+    child = uvec2(l0.w, l1.w);
+}
+#else
+// The ends of the ray's way through the two boxes of node `i`, along the ray from `start`; a box is met where
+// near <= far. The last factor widens the way by the rounding of three operations (Ize 2013).
+void meet_boxes(BoxRay ray, uint i, float limit, out vec2 near, out vec2 far, out uvec2 child) {
+    uvec4 e0 = node_at(i), e1 = node_at(i + 1u);
+    uvec3 far_shift = 16u - ray.near_shift;
+    vec3 n0 = (vec3((e0.xyz >> ray.near_shift) & 0xFFFFu) - ray.near_origin) * ray.inverse;
+    vec3 f0 = (vec3((e0.xyz >> far_shift) & 0xFFFFu) - ray.far_origin) * ray.inverse;
+    vec3 n1 = (vec3((e1.xyz >> ray.near_shift) & 0xFFFFu) - ray.near_origin) * ray.inverse;
+    vec3 f1 = (vec3((e1.xyz >> far_shift) & 0xFFFFu) - ray.far_origin) * ray.inverse;
+    const float widen = 1.0 + 8.0 * EPSILON;
+    near = vec2(max(max(n0.x, n0.y), max(n0.z, 0.0)), max(max(n1.x, n1.y), max(n1.z, 0.0)));
+    far = vec2(min(min_component3(f0) * widen, limit), min(min_component3(f1) * widen, limit));
+    child = uvec2(e0.w, e1.w);
+}
+#endif
