@@ -1,0 +1,228 @@
+#include "host/scene/classes.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "host/error.h"
+#include "host/scene/features.h"
+
+namespace etendue {
+namespace {
+
+// "rough_glass" -> "RoughGlass"
+std::string camel_case(const std::string& name) {
+    std::string result;
+    bool upper = true;
+    for (char c : name) {
+        if (c == '_' || c == '-') upper = true;
+        else result += upper ? char(std::toupper(c)) : c, upper = false;
+    }
+    return result;
+}
+
+std::string trim(std::string text) {
+    const auto blank = [](unsigned char c) { return std::isspace(c); };
+    while (!text.empty() && blank(text.back())) text.pop_back();
+    text.erase(text.begin(), std::find_if_not(text.begin(), text.end(), blank));
+    return text;
+}
+
+// The comment lines at the head of a class file, without the slashes.
+std::string head_comment(const std::string& text) {
+    std::istringstream lines(text);
+    std::string line, result;
+    while (std::getline(lines, line) && line.rfind("//", 0) == 0) result += trim(line.substr(2)) + "\n";
+    return trim(result);
+}
+
+double range_end(const std::string& text) {
+    if (text == "inf") return std::numeric_limits<double>::infinity();
+    if (text == "-inf") return -std::numeric_limits<double>::infinity();
+    return std::stod(text);
+}
+
+// DEFAULT [in RANGE] [UNIT]. Description.
+void parse_annotation(const std::string& annotation, Parameter& p, const std::string& file) {
+    static const std::regex form(
+        R"(^(\[[^\]]*\]|\S+?)(?:\s+in\s+([\[(])\s*([^,\s]+)\s*,\s*([^\])\s]+)\s*([\])]))?(?:\s+(\S[^.]*?))?\.(?:\s+(.*))?$)");
+    std::smatch match;
+    if (!std::regex_match(annotation, match, form))
+        fail_input("{}: the comment of member {} reads '{}'; expected '//: DEFAULT [in RANGE] [UNIT]. Description.'", file,
+                   p.member.name, annotation);
+    p.from_scene = true;
+    const std::string value = match[1];
+    if (value == "required") p.required = true;
+    else if (value != "none") {
+        p.default_value = nlohmann::json::parse(value, nullptr, false);
+        if (p.default_value.is_discarded())
+            fail_input("{}: default '{}' of member {} is not a JSON value", file, value, p.member.name);
+    }
+    if (match[2].matched) {
+        p.lo_open = match[2] == "(", p.hi_open = match[5] == ")";
+        p.lo = range_end(match[3]), p.hi = range_end(match[4]);
+    }
+    p.unit = trim(match[6]);
+    p.text = trim(match[7]);
+}
+
+// A shader that uses a struct in a buffer, so that its layout can be read from the SPIR-V.
+ShaderLayout compile_layout(ShaderSources sources, const std::string& includes, const std::string& record) {
+    for (const InterfaceInfo& interface : all_interfaces()) {
+        auto& header = sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)];
+        if (header.empty()) header = class_header(interface, {});
+    }
+    sources.generated["reflect_record.comp"] = fmt::format(
+        "{}layout(scalar, set = 0, binding = 0) buffer Reflected {{ {} reflected[]; }};\n"
+        "void main() {{ reflected[0] = reflected[1]; }}\n",
+        includes, record);
+    CompileOptions options;
+    options.defines = Features::everything().defines();
+    options.optimize = false;
+    return reflect_shader(compile_shader(sources, "reflect_record.comp", options).spirv);
+}
+
+const BlockLayout& reflected_block(const ShaderLayout& layout) {
+    for (const BlockLayout& block : layout.blocks)
+        if (block.name == "Reflected") return block;
+    fail_input("a record could not be reflected");
+}
+
+}  // namespace
+
+const std::array<InterfaceInfo, 6>& all_interfaces() {
+    static const std::array<InterfaceInfo, 6> table = {{
+        {Interface::geometry, "geometry", "geometry", "interfaces/geometry.glsl", "GEOMETRY_CLASSES", "GeometryRecords"},
+        {Interface::light, "light", "lights", "interfaces/light_source.glsl", "LIGHT_CLASSES", "LightRecords"},
+        {Interface::receiver, "receiver", "receivers", "interfaces/receiver.glsl", "RECEIVER_CLASSES", "ReceiverRecords"},
+        {Interface::surface, "surface", "surfaces", "interfaces/surface_optics.glsl", "SURFACE_CLASSES", "SurfaceRecords"},
+        {Interface::medium, "medium", "media", "interfaces/medium_optics.glsl", "MEDIUM_CLASSES", "MediumRecords"},
+        {Interface::element, "element", "elements", "interfaces/optical_element.glsl", "ELEMENT_CLASSES", "ElementRecords"},
+    }};
+    return table;
+}
+
+const InterfaceInfo& interface_info(Interface interface) { return all_interfaces()[size_t(interface)]; }
+
+bool Parameter::in_range(double value) const {
+    if (std::isnan(value)) return false;
+    return (lo_open ? value > lo : value >= lo) && (hi_open ? value < hi : value <= hi);
+}
+
+std::string Parameter::range() const {
+    if (std::isinf(lo) && std::isinf(hi)) return "";
+    return fmt::format("{}{}, {}{}", lo_open ? '(' : '[', lo, hi, hi_open ? ')' : ']');
+}
+
+ClassRegistry::ClassRegistry(ShaderSources sources) : sources_(std::move(sources)) {
+    const std::string text = sources_.get("registry.h");
+    static const std::regex row(R"(X\(\s*(\d+)\s*,\s*(\w+)\s*,\s*(\w+)\s*\))");
+    for (const InterfaceInfo& interface : all_interfaces()) {
+        size_t begin = text.find(fmt::format("#define {}(X)", interface.table));
+        if (begin == std::string::npos) fail_input("registry.h: table {} is missing", interface.table);
+        begin = text.find(')', begin) + 1;  // behind "(X)"
+        size_t end = begin;                 // the table ends with the first line that is not continued
+        do end = text.find('\n', end + 1);
+        while (end != std::string::npos && text[end - 1] == '\\');
+        const std::string table = text.substr(begin, end - begin);
+        auto& classes = classes_[interface.interface];
+        for (std::sregex_iterator i(table.begin(), table.end(), row), none; i != none; ++i) {
+            ClassInfo info;
+            info.interface = interface.interface;
+            info.tag = uint32_t(std::stoul((*i)[1]));
+            info.record = (*i)[2];
+            info.name = (*i)[3];
+            info.file = fmt::format("{}/{}.glsl", interface.folder, info.name);
+            if (auto source = sources_.find(info.file)) info.summary = head_comment(*source);
+            classes.push_back(std::move(info));
+        }
+    }
+}
+
+void ClassRegistry::add_class_file(Interface interface, const std::filesystem::path& file) {
+    ClassInfo info;
+    info.interface = interface;
+    info.name = file.stem().string();
+    info.record = camel_case(info.name);
+    info.file = file.string();
+    auto& classes = classes_[interface];
+    info.tag = 128;
+    for (const ClassInfo& other : classes) {
+        if (other.name == info.name)
+            fail_input("{}: there is already a {} class called {}", info.file, interface_info(interface).name, info.name);
+        info.tag = std::max(info.tag, other.tag + 1);
+    }
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) fail_input("{}: cannot read the class file", info.file);
+    const std::string text = (std::ostringstream() << stream.rdbuf()).str();
+    if (!std::regex_search(text, std::regex(fmt::format(R"(struct\s+{}\b)", info.record))))
+        fail_input("{}: a class file declares its record; struct {} is missing", info.file, info.record);
+    info.summary = head_comment(text);
+    sources_.generated[info.file] = text;
+    classes.push_back(std::move(info));
+}
+
+const std::vector<ClassInfo>& ClassRegistry::classes(Interface interface) const { return classes_.at(interface); }
+
+const ClassInfo* ClassRegistry::find(Interface interface, const std::string& name) {
+    for (ClassInfo& info : classes_.at(interface))
+        if (info.name == name) {
+            if (info.stride == 0) reflect(info);
+            return &info;
+        }
+    return nullptr;
+}
+
+std::vector<MemberLayout> ClassRegistry::reflect_struct(const std::string& file, const std::string& name,
+                                                        uint32_t& stride) const {
+    const ShaderLayout layout = compile_layout(sources_, fmt::format("#include \"{}\"\n", file), name);
+    stride = reflected_block(layout).stride;
+    return reflected_block(layout).element_members;
+}
+
+void ClassRegistry::reflect(ClassInfo& info) const {
+    const InterfaceInfo& interface = interface_info(info.interface);
+    ShaderSources sources = sources_;
+    sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] = class_header(interface, {&info});
+    const ShaderLayout layout =
+        compile_layout(std::move(sources), fmt::format("#include \"{}\"\n", interface.contract), info.record);
+    const BlockLayout& block = reflected_block(layout);
+    info.stride = block.stride;
+
+    // The annotations stand behind the members of the struct, one member a line.
+    const std::string text = sources_.get(info.file);
+    std::map<std::string, std::string> annotations;
+    std::smatch start;
+    if (std::regex_search(text, start, std::regex(fmt::format(R"(struct\s+{}\s*\{{)", info.record)))) {
+        std::istringstream lines(start.suffix().str());
+        static const std::regex member(R"(^\s*\w+\s+(\w+)\s*;\s*//:\s*(.*?)\s*$)");
+        for (std::string line; std::getline(lines, line) && trim(line).rfind("};", 0) != 0;)
+            if (std::smatch match; std::regex_match(line, match, member)) annotations[match[1]] = match[2];
+    }
+    for (const MemberLayout& member : block.element_members) {
+        Parameter parameter;
+        parameter.member = member;
+        if (auto found = annotations.find(member.name); found != annotations.end())
+            parse_annotation(found->second, parameter, info.file);
+        info.parameters.push_back(std::move(parameter));
+    }
+}
+
+std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes) {
+    std::string text = fmt::format("#define {}(X)", interface.table);
+    for (const ClassInfo* info : classes) text += fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
+    text += '\n';
+    for (const ClassInfo* info : classes) {
+        text += fmt::format("#include \"{}\"\n", info->file);
+        // Triangles are not records of their own buffer: they are read in place, from the primitives.
+        if (interface.interface == Interface::geometry && info->name == "triangle") continue;
+        // All classes of an interface are views of one buffer, on one binding.
+        text += fmt::format("layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {} {}_records[]; }};\n",
+                            int(interface.interface), interface.buffer, info->name, info->record, info->name);
+    }
+    return text;
+}
+
+}  // namespace etendue

@@ -1,0 +1,85 @@
+// The classes of scene objects: read from shaders/registry.h and from class files, never declared in C++.
+//
+// A class's record is a struct in its GLSL file. Names, types and offsets of the members come from reflecting the
+// compiled struct; default, range, unit and meaning of a parameter from the comment behind its member:
+//
+//     float alpha;  //: 0 in [0, 1] UNIT. Description.
+//
+// Members without `//:` are filled by the host.
+#pragma once
+#include <array>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "host/gpu/reflection.h"
+#include "host/gpu/shader_source.h"
+
+namespace etendue {
+
+enum class Interface { geometry, light, receiver, surface, medium, element };
+
+struct InterfaceInfo {
+    Interface interface;
+    const char* name;      // as scene files spell it
+    const char* folder;    // under shaders/
+    const char* contract;  // file with the interface's dispatch
+    const char* table;     // macro of registry.h
+    const char* buffer;    // storage buffer of the records
+};
+const std::array<InterfaceInfo, 6>& all_interfaces();
+const InterfaceInfo& interface_info(Interface interface);
+
+struct Parameter {
+    MemberLayout member;
+    bool from_scene = false;       // has a `//:` comment
+    bool required = false;
+    nlohmann::json default_value;  // null = absent
+    double lo = -std::numeric_limits<double>::infinity(), hi = std::numeric_limits<double>::infinity();
+    bool lo_open = true, hi_open = true;
+    std::string unit, text;
+
+    bool in_range(double value) const;
+    std::string range() const;  // "[0, 1]"; empty where there is none
+};
+
+struct ClassInfo {
+    Interface interface = Interface::surface;
+    uint32_t tag = 0;
+    std::string record, name, file;  // struct, class, GLSL file
+    std::string summary;             // the comment at the head of the file
+    // Filled by reflection, at first use:
+    uint32_t stride = 0;             // bytes of a record
+    std::vector<Parameter> parameters;
+};
+
+// Reads registry.h at once and class files when they are asked for.
+class ClassRegistry {
+  public:
+    explicit ClassRegistry(ShaderSources sources);
+
+    // Adds a class from a file outside the registry: class name = file stem, record = its struct named in CamelCase
+    // of the stem. Fails with the file's name where the file or the struct is missing, or the name is taken.
+    void add_class_file(Interface interface, const std::filesystem::path& file);
+
+    const std::vector<ClassInfo>& classes(Interface interface) const;  // in order of tags, perhaps not reflected yet
+    // Reflected; null where there is no such class.
+    const ClassInfo* find(Interface interface, const std::string& name);
+
+    // Layout of any struct that shader file `file` declares.
+    std::vector<MemberLayout> reflect_struct(const std::string& file, const std::string& name, uint32_t& stride) const;
+
+    const ShaderSources& sources() const { return sources_; }
+
+  private:
+    void reflect(ClassInfo& info) const;
+    ShaderSources sources_;
+    std::map<Interface, std::vector<ClassInfo>> classes_;
+};
+
+// Text of "generated/NAME_classes.glsl" for the given classes: the dispatch table, the class files, their buffers.
+std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes);
+
+}  // namespace etendue

@@ -1,0 +1,34 @@
+#include "host/scene/features.h"
+
+#include <fmt/format.h>
+
+namespace etendue {
+
+Features Features::everything() {
+    Features f;
+    f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.textures = true;
+    f.media = f.interfaces = f.straight = f.light_tree = true;
+    f.light_count = 16;
+    f.infinite_light_count = 2;
+    return f;
+}
+
+std::string Features::defines() const {
+    std::string text;
+    const auto define = [&](const char* name, uint32_t value) { text += fmt::format("#define {} {}\n", name, value); };
+    define("HAS_TRIANGLES", triangles);
+    define("HAS_SHAPES", shapes);
+    define("HAS_INSTANCES", instances);
+    define("HAS_VERTEX_ATTRIBUTES", vertex_attributes);
+    define("HAS_NORMAL_MAPS", normal_maps);
+    define("HAS_TEXTURES", textures);
+    define("HAS_MEDIA", media);
+    define("HAS_INTERFACES", interfaces);
+    define("HAS_STRAIGHT", straight);
+    define("HAS_LIGHT_TREE", light_tree);
+    define("LIGHT_COUNT", light_count);
+    define("INFINITE_LIGHT_COUNT", infinite_light_count);
+    return text;
+}
+
+}  // namespace etendue

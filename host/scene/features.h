@@ -1,0 +1,27 @@
+// What a scene needs, as the shaders see it: macros in front of every kernel, and one header of classes per interface.
+// Only what is listed here is compiled; record layouts never depend on it.
+#pragma once
+#include <cstdint>
+#include <string>
+
+namespace etendue {
+
+struct Features {
+    bool triangles = false;          // the world hierarchy holds triangles
+    bool shapes = false;             // … analytic shapes
+    bool instances = false;          // … instances of meshes
+    bool vertex_attributes = false;  // normals, tangents, texture coordinates or colors
+    bool normal_maps = false;
+    bool textures = false;
+    bool media = false;              // some medium absorbs
+    bool interfaces = false;         // some surface separates media: paths keep track of where they are
+    bool straight = false;           // some surface lets light pass straight on: shadow rays go through
+    bool light_tree = false;
+    uint32_t light_count = 0;        // finite and infinite lights
+    uint32_t infinite_light_count = 0;
+
+    static Features everything();  // for lint and reflection
+    std::string defines() const;
+};
+
+}  // namespace etendue

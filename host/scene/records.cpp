@@ -1,0 +1,169 @@
+#include "host/scene/records.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "host/error.h"
+
+namespace etendue {
+namespace {
+
+using nlohmann::json;
+
+template <class T>
+void store(std::vector<std::byte>& record, uint32_t offset, const T& value) {
+    std::memcpy(record.data() + offset, &value, sizeof(T));
+}
+
+std::string allowed(const Parameter& p) {
+    const std::string range = p.range();
+    return range.empty() ? "" : " in " + range + (p.unit.empty() ? "" : " " + p.unit);
+}
+
+float checked_number(const json& value, const Parameter& p, const std::string& place) {
+    if (!value.is_number()) fail_input("{}: not a number; allowed: a number{}", place, allowed(p));
+    const double number = value.get<double>();
+    if (!std::isfinite(number) || std::abs(number) > 3e38 || !p.in_range(number))
+        fail_input("{}: {} is out of range; allowed: a number{}", place, number, allowed(p));
+    return float(number);
+}
+
+int vector_length(const std::string& type) {
+    return type == "vec2" ? 2 : type == "vec3" ? 3 : type == "vec4" ? 4 : 0;
+}
+
+// One parameter, from its JSON value, into the record.
+void fill_parameter(const Parameter& p, const json& value, const std::string& where, const RecordResolver& resolver,
+                    std::vector<std::byte>& record) {
+    const std::string& type = p.member.type;
+    const uint32_t at = p.member.offset;
+    const std::string place = message_place(resolver.scene, where);
+    if (type == "float") {
+        store(record, at, checked_number(value, p, place));
+    } else if (const int length = vector_length(type)) {
+        if (!value.is_array() || int(value.size()) != length)
+            fail_input("{}: allowed: an array of {} numbers{}", place, length, allowed(p));
+        for (int i = 0; i < length; ++i) store(record, at + 4 * i, checked_number(value[i], p, fmt::format("{}/{}", place, i)));
+    } else if (type == "uint" || type == "int") {
+        // A bool of GLSL is a uint in a buffer; its default tells them apart.
+        if (p.default_value.is_boolean()) {
+            if (!value.is_boolean()) fail_input("{}: allowed: true or false", place);
+            store(record, at, uint32_t(value.get<bool>()));
+        } else {
+            if (!value.is_number_integer()) fail_input("{}: allowed: a whole number{}", place, allowed(p));
+            checked_number(value, p, place);
+            if (type == "uint" && value.get<int64_t>() < 0) fail_input("{}: allowed: a whole number >= 0", place);
+            store(record, at, uint32_t(value.get<int64_t>()));
+        }
+    } else if (type == "SpectrumRef") {
+        if (value.is_null()) return store(record, at, glm::vec4(-1, -1, -1, 0));
+        const glm::vec3 rgb = spectral_value(value, resolver.scene, where);
+        for (int i = 0; i < 3; ++i)
+            if (!p.in_range(rgb[i])) fail_input("{}: {} is out of range; allowed:{}", place, rgb[i], allowed(p));
+        store(record, at, glm::vec4(rgb, 0));
+    } else if (type == "TextureRef") {
+        store(record, at, value.is_null() ? no_record : resolver.texture(value, p.unit != "data", where));
+    } else if (type == "MediumRef") {
+        uint32_t ref = no_record;
+        if (!value.is_null()) {
+            const auto found = value.is_string() ? resolver.media.find(value.get<std::string>()) : resolver.media.end();
+            if (found == resolver.media.end()) fail_input("{}: {} is not the name of a medium", place, value.dump());
+            ref = found->second;
+        }
+        store(record, at, ref);
+    } else if (type == "EnvironmentMapRef") {
+        if (!value.is_string()) fail_input("{}: allowed: the name of an image file", place);
+        store(record, at, resolver.environment_map(value.get<std::string>(), where));
+    } else {
+        fail_input("{}: the class's member {} has type {}, which no parameter can fill", place, p.member.name, type);
+    }
+}
+
+}  // namespace
+
+std::string message_place(const SceneDescription& scene, const std::string& where) {
+    return fmt::format("{}: {}", scene.file.string(), where.empty() ? "/" : where);
+}
+
+glm::vec3 spectral_value(const json& value, const SceneDescription& scene, const std::string& where) {
+    const std::string place = message_place(scene, where);
+    const auto number = [&](const json& v) {
+        if (!v.is_number() || !std::isfinite(v.get<double>()) || std::abs(v.get<double>()) > 3e38)
+            fail_input("{}: {} is not a finite number", place, v.dump());
+        return float(v.get<double>());
+    };
+    if (value.is_number()) return glm::vec3(number(value));
+    if (value.is_array() && value.size() == 3) return {number(value[0]), number(value[1]), number(value[2])};
+    if (value.is_object() && value.contains("name")) {
+        const auto found = value["name"].is_string() ? scene.spectra.find(value["name"].get<std::string>()) : scene.spectra.end();
+        if (found == scene.spectra.end()) fail_input("{}: {} is not the name of a spectrum", place, value["name"].dump());
+        // A named spectrum may not name another one: that could go round in circles.
+        if (found->second.is_object() && found->second.contains("name"))
+            fail_input("{}: the spectrum {} names another spectrum", place, value["name"].dump());
+        return spectral_value(found->second, scene, where);
+    }
+    if (value.is_object())
+        fail_input("{}: tabulated spectra need spectral rendering, which this version does not have; allowed: a number or "
+                   "[r, g, b]", place);
+    fail_input("{}: not a spectral value; allowed: a number, [r, g, b] or {{\"name\": …}}", place);
+}
+
+std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescription& object,
+                                   const std::optional<glm::dmat4>& placement, const RecordResolver& resolver) {
+    std::vector<std::byte> record(info.stride);
+    for (const auto& [name, value] : object.parameters.items()) {
+        const auto known = std::any_of(info.parameters.begin(), info.parameters.end(), [&, &name = name](const Parameter& p) {
+            return p.from_scene && p.member.name == name;
+        });
+        if (known) continue;
+        std::string names;
+        for (const Parameter& p : info.parameters)
+            if (p.from_scene) names += (names.empty() ? "" : ", ") + p.member.name;
+        fail_input("{}/{}: unknown parameter of {} {}; allowed: {}", message_place(resolver.scene, object.where), name,
+                   interface_info(info.interface).name, info.name, names.empty() ? "none" : names);
+    }
+    for (const Parameter& p : info.parameters) {
+        if (p.member.type == "Placement") {
+            const glm::dmat4 m = placement.value_or(glm::dmat4(1.0));
+            for (int column = 0; column < 4; ++column)
+                store(record, p.member.offset + 12 * column, glm::vec3(m[column]));
+        } else if (p.from_scene) {
+            const bool given = object.parameters.contains(p.member.name);
+            if (!given && p.required)
+                fail_input("{}: {} {} needs the parameter {}; {}", message_place(resolver.scene, object.where),
+                           interface_info(info.interface).name, info.name, p.member.name, p.text);
+            fill_parameter(p, given ? object.parameters[p.member.name] : p.default_value, object.where + "/" + p.member.name,
+                           resolver, record);
+        }
+    }
+    return record;
+}
+
+void RecordBuffer::add(const ClassInfo& info, std::vector<std::byte> record) {
+    Region& region = regions_.try_emplace(info.name, Region{info.tag, info.stride}).first->second;
+    region.records.insert(region.records.end(), record.begin(), record.end());
+}
+
+uint32_t RecordBuffer::count(const ClassInfo& info) const {
+    const auto found = regions_.find(info.name);
+    return found == regions_.end() ? 0 : uint32_t(found->second.records.size() / info.stride);
+}
+
+void RecordBuffer::layout() {
+    bytes_.clear();
+    for (auto& [name, region] : regions_) {
+        const size_t start = (bytes_.size() + region.stride - 1) / region.stride * region.stride;
+        region.first = uint32_t(start / region.stride);
+        if (region.first + region.records.size() / region.stride > 0xFFFFFF)
+            fail_input("too many objects of class {}: at most 16 million", name);
+        bytes_.resize(start);
+        bytes_.insert(bytes_.end(), region.records.begin(), region.records.end());
+    }
+}
+
+uint32_t RecordBuffer::ref(const ClassInfo& info, uint32_t nth) const {
+    return record_ref(info.tag, regions_.at(info.name).first + nth);
+}
+
+}  // namespace etendue

@@ -1,0 +1,59 @@
+// Records of scene objects, filled from the scene file's parameters by name, as the class's reflection describes them.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <glm/glm.hpp>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "host/scene/classes.h"
+#include "host/scene/description.h"
+#include "host/scene/environment_map.h"
+
+namespace etendue {
+
+// What typed members of a record refer to.
+struct RecordResolver {
+    const SceneDescription& scene;
+    std::map<std::string, uint32_t> media;  // name -> RecordRef
+    // Index of the Texture for a glTF textureInfo; `color`: its image is sRGB.
+    std::function<uint32_t(const nlohmann::json& info, bool color, const std::string& where)> texture;
+    std::function<EnvironmentMapRef(const std::filesystem::path& file, const std::string& where)> environment_map;
+};
+
+constexpr uint32_t no_record = 0xFFFFFFFFu;
+constexpr uint32_t record_ref(uint32_t tag, uint32_t index) { return tag << 24 | index; }
+
+// One record's bytes. `placement` (world_from_local) goes into members of type Placement. Unknown parameters, wrong types
+// and values out of range fail with file, JSON pointer, and what is allowed.
+std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescription& object,
+                                   const std::optional<glm::dmat4>& placement, const RecordResolver& resolver);
+
+// A spectral value of the scene format as linear Rec.709.
+glm::vec3 spectral_value(const nlohmann::json& value, const SceneDescription& scene, const std::string& where);
+
+// "FILE: /pointer": the start of a message about an object of the scene.
+std::string message_place(const SceneDescription& scene, const std::string& where);
+
+// The records of one interface in one buffer: each class's region starts at a multiple of its stride, so that all
+// classes can be typed views of the buffer's start.
+class RecordBuffer {
+  public:
+    void add(const ClassInfo& info, std::vector<std::byte> record);  // in any order
+    // RecordRef of the `nth` record added of a class; valid after layout().
+    uint32_t ref(const ClassInfo& info, uint32_t nth) const;
+    uint32_t count(const ClassInfo& info) const;
+    void layout();
+    const std::vector<std::byte>& bytes() const { return bytes_; }
+
+  private:
+    struct Region {
+        uint32_t tag, stride, first = 0;
+        std::vector<std::byte> records;
+    };
+    std::map<std::string, Region> regions_;
+    std::vector<std::byte> bytes_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,53 @@
+// Whole backward paths in one kernel: for scenes of few classes, where keeping a path in registers costs less than its
+// traffic between kernels. Every lane works through its pixels in turn and starts the next path in the same iteration in
+// which one ends, so that lanes stay full.
+// Reads: scene. Writes: film, counters of its lane. Barrier expected: after the dispatch.
+layout(local_size_x = 64) in;
+
+layout(push_constant) uniform Push {
+    uint receiver;       // RecordRef
+    uint width;
+    uint height;
+    uint first_sample;   // index of the first pass
+    uint sample_count;   // passes of this dispatch
+    uint seed;
+};
+
+#include "stages/emit_camera_ray.glsl"
+#include "stages/scatter_path.glsl"
+#include "stages/trace_shadow.glsl"
+#include "lib/counters.glsl"
+#include "lib/film.glsl"
+
+void main() {
+    uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint pixels = width * height;
+    uint pixel = scattered_lane();
+    uint sample_index = 0u;
+    Counters counters = no_counters();
+    Path path;
+    bool alive = false;
+    FilmPixel sum;
+    if (pixel < pixels) sum = film[pixel];
+    while (pixel < pixels) {
+        if (!alive)
+            path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height),
+                                   first_sample + sample_index, seed);
+        counters.rays++;
+        Hit hit = find_hit(path.origin, path.direction, INFINITY);
+        ShadowRay shadow;
+        alive = scatter_path(path, hit, counters, shadow);
+        path.radiance += trace_shadow(shadow, counters);
+        if (!alive) {
+            if (is_finite(path.radiance)) add_sample(sum, path.radiance);
+            else counters.non_finite++, add_sample(sum, vec3(0));
+            if (++sample_index == sample_count) {
+                film[pixel] = sum;
+                pixel += lanes;
+                sample_index = 0u;
+                if (pixel < pixels) sum = film[pixel];
+            }
+        }
+    }
+    store_counters(counters);
+}

@@ -1,0 +1,37 @@
+// Follows a shadow ray: what of its contribution reaches the point. Surfaces that let light pass straight on (alpha,
+// index-matched boundaries, thin glass) and absorbing media attenuate it; anything else blocks it.
+#include "lib/path.glsl"
+#include "lib/scattering.glsl"
+#include "lib/traversal.glsl"
+
+Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
+    if (!(shadow.t_max > 0.0)) return Spectrum(0);
+    counters.shadow_rays++;
+#if !HAS_STRAIGHT && !HAS_MEDIA
+    return find_occlusion(shadow.origin, shadow.direction, shadow.t_max) ? Spectrum(0) : shadow.contribution;
+#elif !HAS_STRAIGHT
+    if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return Spectrum(0);
+    return shadow.contribution * medium_transmittance(shadow.medium, shadow.t_max);
+#else
+    Spectrum left = shadow.contribution;
+    float t_left = shadow.t_max;
+    while (true) {
+        Hit hit = find_hit(shadow.origin, shadow.direction, t_left);
+        bool met = hit.primitive != NO_RECORD;
+#if HAS_MEDIA
+        if (shadow.medium != NO_RECORD) left *= medium_transmittance(shadow.medium, met ? hit.t : t_left);
+#endif
+        if (!met) return left;
+        SurfacePoint p = locate(hit, shadow.origin, shadow.direction);
+        if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
+        ScatteringPoint s = scattering_point(p, shadow.direction, shadow.medium, false);
+        left *= surface_transparency(s.surface, s.context, s.wo);
+        if (is_black(left)) return Spectrum(0);
+        vec3 origin = offset_origin(p.position, p.error, p.geometric_normal, shadow.direction);
+        t_left = t_left < INFINITY ? t_left - dot(origin - shadow.origin, shadow.direction) : INFINITY;
+        if (!(t_left > 0.0)) return left;
+        shadow.origin = origin;
+        shadow.medium = scattering_medium(s, shadow.direction);
+    }
+#endif
+}
