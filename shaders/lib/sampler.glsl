@@ -1,0 +1,71 @@
+// Uniform numbers for the estimators: the first two dimensions of Sobol's sequence, Owen-scrambled, one pair after another
+// with a fresh shuffle and scramble for each ("padded"; Burley 2020, "Practical Hash-based Owen Scrambling").
+//
+// Every pair of every pixel is a (0,2)-sequence over the sample index, so any 2^k consecutive samples that start at a
+// multiple of 2^k are stratified in all elementary intervals; pairs and pixels are independent of one another.
+// Numbers are multiples of 2^-24 in [0, 1).
+struct Sampler {
+    uint index;       // of the sample in its pixel
+    uint pixel_hash;  // of pixel and seed
+    uint dimension;   // pairs drawn so far
+};
+
+// Three hashes at once (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering", pcg3d).
+uvec3 hash_3d(uvec3 v) {
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> 16;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
+// Nested uniform scramble of a number whose bits stand in reverse order: every bit is flipped by a hash of the bits below
+// it. The form is that of Laine & Karras 2011; the constants are Vegdahl's (2021, "Building a Better LK Hash").
+uint scramble_reversed(uint x, uint seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+// Sobol's second dimension of `index`, bits in reverse order. Its matrix is Pascal's triangle modulo 2, where (i, j) is 1
+// when the bits of i are among those of j (Lucas 1878): a sum over supersets, done in log2(32) butterfly steps.
+uint sobol_second_reversed(uint index) {
+    index ^= (index >> 1) & 0x55555555u;
+    index ^= (index >> 2) & 0x33333333u;
+    index ^= (index >> 4) & 0x0f0f0f0fu;
+    index ^= (index >> 8) & 0x00ff00ffu;
+    index ^= index >> 16;
+    return index;
+}
+
+Sampler start_sampler(uvec2 pixel, uint sample_index, uint seed) {
+    return Sampler(sample_index, hash_3d(uvec3(pixel, seed)).x, 0u);
+}
+
+vec2 sample_2d(inout Sampler s) {
+    uvec3 seeds = hash_3d(uvec3(s.pixel_hash, s.dimension, 0u));
+    s.dimension++;
+    uint index = bitfieldReverse(scramble_reversed(bitfieldReverse(s.index), seeds.x));
+    uvec2 reversed = uvec2(scramble_reversed(index, seeds.y), scramble_reversed(sobol_second_reversed(index), seeds.z));
+    return vec2(bitfieldReverse(reversed) >> 8) * (1.0 / 16777216.0);
+}
+
+float sample_1d(inout Sampler s) {
+    uvec3 seeds = hash_3d(uvec3(s.pixel_hash, s.dimension, 0u));
+    s.dimension++;
+    uint index = bitfieldReverse(scramble_reversed(bitfieldReverse(s.index), seeds.x));
+    return float(bitfieldReverse(scramble_reversed(index, seeds.y)) >> 8) * (1.0 / 16777216.0);
+}
+
+// A pair that is stratified together, and one number more.
+vec3 sample_3d(inout Sampler s) {
+    vec2 pair = sample_2d(s);
+    return vec3(pair, sample_1d(s));
+}
