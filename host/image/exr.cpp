@@ -142,12 +142,13 @@ void write_exr(const std::filesystem::path& path, const Image& image) {
     write_atomically(path, memory.bytes);
 }
 
-Image read_exr(const std::filesystem::path& path) {
-    std::vector<std::byte> bytes = read_whole_file(path);
+Image read_exr(const std::filesystem::path& path) { return read_exr(read_whole_file(path), path.string()); }
+
+Image read_exr(std::span<const std::byte> bytes, const std::string& name) {
     try {
-        MemoryInput stream(path.string(), bytes);
+        MemoryInput stream(name, bytes);
         Imf::InputFile file(stream);
-        return read_image(file, path.string());
+        return read_image(file, name);
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {
@@ -156,7 +157,7 @@ Image read_exr(const std::filesystem::path& path) {
         // OpenEXR's messages may run over several lines and repeat the file's name.
         std::string reason = e.what();
         std::replace(reason.begin(), reason.end(), '\n', ' ');
-        fail_input("{}: not a readable OpenEXR image: {}", path.string(), reason);
+        fail_input("{}: not a readable OpenEXR image: {}", name, reason);
     }
 }
 

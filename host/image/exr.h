@@ -13,4 +13,7 @@ void write_exr(const std::filesystem::path& path, const Image& image);
 // attributes. Fails with one line where the file is missing, damaged, deep, or has subsampled channels.
 Image read_exr(const std::filesystem::path& path);
 
+// The same for a file in memory; `name` begins every message.
+Image read_exr(std::span<const std::byte> bytes, const std::string& name);
+
 }  // namespace etendue

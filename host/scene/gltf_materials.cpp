@@ -1,0 +1,137 @@
+// Materials: metallic-roughness with the KHR extensions that the class `principled` models, emission and media.
+#include <algorithm>
+#include <cmath>
+
+#include "host/scene/gltf_import.h"
+
+namespace etendue {
+namespace {
+
+using nlohmann::json;
+
+void read_texture(GltfImport& import, const JsonAt& object, const char* key, json& parameters, const char* name) {
+    if (std::optional<JsonAt> info = find_object(object, key)) parameters[name] = read_texture_info(import, *info);
+}
+
+int alpha_mode(const JsonAt& material) {
+    std::string mode = text(material, "alphaMode", "OPAQUE");
+    if (mode == "OPAQUE") return 0;
+    if (mode == "MASK") return 1;
+    if (mode == "BLEND") return 2;
+    fail_at(member(material, "alphaMode"), "is '{}'; must be OPAQUE, MASK or BLEND", mode);
+}
+
+double material_ior(const JsonAt& material) {
+    std::optional<JsonAt> extension = find_extension(material, "KHR_materials_ior");
+    if (!extension) return 1.5;
+    double ior = number(*extension, "ior", 1.5, 0, 100);
+    if (ior != 0 && ior < 1) fail_at(member(*extension, "ior"), "is {}; must be 0, or at least 1", ior);
+    return ior;
+}
+
+// The parameters of class `principled`, as glTF 2.0, section 3.9 and its appendix B name the quantities.
+json principled_parameters(GltfImport& import, const JsonAt& material) {
+    json p = json::object();
+    json none = json::object();
+    JsonAt metal = find_object(material, "pbrMetallicRoughness").value_or(JsonAt{&none, material.pointer, material.file});
+    p["base_color"] = numbers(metal, "baseColorFactor", {1, 1, 1, 1}, 0, 1);
+    p["metallic"] = number(metal, "metallicFactor", 1, 0, 1);
+    p["roughness"] = number(metal, "roughnessFactor", 1, 0, 1);
+    read_texture(import, metal, "baseColorTexture", p, "base_color_texture");
+    read_texture(import, metal, "metallicRoughnessTexture", p, "metallic_roughness_texture");
+    p["alpha_mode"] = alpha_mode(material);
+    p["alpha_cutoff"] = number(material, "alphaCutoff", 0.5, 0, max_coordinate);
+    p["ior"] = material_ior(material);
+    if (std::optional<JsonAt> transmission = find_extension(material, "KHR_materials_transmission")) {
+        p["transmission"] = number(*transmission, "transmissionFactor", 0, 0, 1);
+        read_texture(import, *transmission, "transmissionTexture", p, "transmission_texture");
+    }
+    return p;
+}
+
+// The medium of a volume: Beer-Lambert with attenuationColor left after attenuationDistance (KHR_materials_volume).
+json volume_parameters(const JsonAt& volume, double ior) {
+    std::vector<double> color = numbers(volume, "attenuationColor", {1, 1, 1}, 0, 1);
+    json absorption = 0.0;
+    if (std::optional<JsonAt> distance = find(volume, "attenuationDistance")) {
+        double d = number_value(*distance, DBL_MIN);
+        absorption = json::array();
+        // A channel of 0 would absorb without bound: what is left of it is less than any image shows.
+        for (double c : color) absorption.push_back(std::fabs(std::log(std::max(c, 1e-9)) / d));
+    }
+    return {{"ior", ior == 0 ? 1e3 : ior}, {"absorption", absorption}};
+}
+
+void add_medium(GltfImport& import, MaterialDescription& material, const JsonAt& at, json parameters) {
+    std::string name = "medium of " + at.pointer;
+    import.scene.media.push_back({name, {"homogeneous", std::move(parameters), at.pointer}});
+    material.inside = name;
+}
+
+void read_emission(GltfImport& import, const JsonAt& at, MaterialDescription& material) {
+    std::vector<double> factor = numbers(at, "emissiveFactor", {0, 0, 0}, 0, max_coordinate);
+    double strength = 1;
+    if (std::optional<JsonAt> extension = find_extension(at, "KHR_materials_emissive_strength"))
+        strength = number(*extension, "emissiveStrength", 1, 0, 1e30);
+    std::optional<JsonAt> texture = find_object(at, "emissiveTexture");
+    for (double& f : factor) f *= strength;
+    if (std::all_of(factor.begin(), factor.end(), [](double f) { return f == 0; })) return;
+    EmissionDescription emission;
+    emission.value = factor;
+    if (texture) emission.texture = read_texture_info(import, *texture);
+    emission.where = at.pointer;
+    material.emission = emission;
+}
+
+MaterialDescription read_material(GltfImport& import, size_t i) {
+    JsonAt at = document_element(import, "materials", i);
+    MaterialDescription material;
+    material.name = text(at, "name", fmt::format("material {}", i));
+    material.double_sided = boolean(at, "doubleSided", false);
+    read_emission(import, at, material);
+    if (std::optional<JsonAt> normal = find_object(at, "normalTexture"))
+        material.normal_texture = read_texture_info(import, *normal);
+    if (std::optional<JsonAt> optics = find_extension(at, "ETD_optics"))
+        read_material_optics(import, *optics, material);
+
+    bool media_named = !material.inside.empty() || !material.outside.empty();
+    json& parameters = material.surface.parameters;
+    if (material.surface.class_name == "dielectric") {
+        // The class takes its refractive indices from the media on its sides.
+        if (!media_named) {
+            add_medium(import, material, at, {{"ior", parameters.value("ior", json(1.5))}});
+            parameters.erase("ior");
+        }
+    } else if (material.surface.class_name.empty()) {
+        material.surface = {"principled", principled_parameters(import, at), at.pointer};
+        std::optional<JsonAt> volume = find_extension(at, "KHR_materials_volume");
+        bool thick = volume && number(*volume, "thicknessFactor", 0, 0, max_coordinate) > 0;
+        if (thick && !media_named)
+            add_medium(import, material, at, volume_parameters(*volume, parameters["ior"].get<double>()));
+        else if (!thick && parameters.contains("transmission"))
+            parameters["thin"] = true;
+    }
+    return material;
+}
+
+}  // namespace
+
+void load_materials(GltfImport& import) {
+    for (size_t i = 0; i < array_size(import.root, "materials"); ++i)
+        import.scene.materials.push_back(read_material(import, i));
+}
+
+uint32_t default_material(GltfImport& import) {
+    if (import.default_material == UINT32_MAX) {
+        nlohmann::json empty = nlohmann::json::object();
+        MaterialDescription material;
+        material.name = "default";
+        material.surface = {"principled", principled_parameters(import, {&empty, "/materials", &import.file_name}),
+                            "/materials"};
+        import.default_material = uint32_t(import.scene.materials.size());
+        import.scene.materials.push_back(material);
+    }
+    return import.default_material;
+}
+
+}  // namespace etendue

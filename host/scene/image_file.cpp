@@ -1,0 +1,103 @@
+#include "host/scene/image_file.h"
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_HDR
+#define STBI_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-but-set-variable"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
+
+#include <climits>
+#include <cmath>
+#include <memory>
+
+#include "host/error.h"
+#include "host/image/atomic_file.h"
+#include "host/image/exr.h"
+
+namespace etendue {
+namespace {
+
+// 16384 x 16384: a header that asks for more is taken for damaged.
+const uint64_t max_texels = uint64_t(1) << 28;
+
+struct StbiFree {
+    void operator()(void* pixels) const { stbi_image_free(pixels); }
+};
+
+void check_size(uint64_t width, uint64_t height, const std::string& where) {
+    if (width == 0 || height == 0 || width * height > max_texels)
+        fail_input("{}: the image has {} x {} texels; 1 to {} are allowed", where, width, height, max_texels);
+}
+
+void check_finite(const ImageDescription& image, const std::string& where) {
+    for (size_t i = 0; i < image.rgba32f.size(); ++i)
+        if (!std::isfinite(image.rgba32f[i]))
+            fail_input("{}: the texel in column {}, row {} of the image is not finite", where, i / 4 % image.width,
+                       i / 4 / image.width);
+}
+
+ImageDescription decode_exr(std::span<const uint8_t> bytes, const std::string& where) {
+    Image exr = read_exr(std::as_bytes(bytes), where);
+    check_size(exr.width, exr.height, where);
+    std::array<size_t, 3> channels = picture_channels(exr);
+    int alpha = find_channel(exr, "A");
+    ImageDescription image;
+    image.width = exr.width, image.height = exr.height;
+    image.rgba32f.resize(4 * pixel_count(exr));
+    for (size_t c = 0; c < 4; ++c) {
+        std::span<const float> from;
+        if (c < 3 || alpha >= 0) from = plane(std::as_const(exr), c < 3 ? channels[c] : size_t(alpha));
+        for (size_t i = 0; i < pixel_count(exr); ++i) image.rgba32f[4 * i + c] = from.empty() ? 1.0f : from[i];
+    }
+    return image;
+}
+
+bool is_exr(std::span<const uint8_t> bytes) {
+    return bytes.size() >= 4 && bytes[0] == 0x76 && bytes[1] == 0x2F && bytes[2] == 0x31 && bytes[3] == 0x01;
+}
+
+}  // namespace
+
+ImageDescription decode_image(std::span<const uint8_t> bytes, const std::string& where) {
+    ImageDescription image;
+    if (is_exr(bytes)) {
+        image = decode_exr(bytes, where);
+    } else {
+        int width = 0, height = 0, channels = 0, size = int(std::min(bytes.size(), size_t(INT_MAX)));
+        if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
+            fail_input("{}: not an image that can be read; PNG, JPEG, Radiance .hdr and OpenEXR are", where);
+        check_size(uint64_t(width), uint64_t(height), where);
+        image.width = uint32_t(width), image.height = uint32_t(height);
+        size_t count = 4 * size_t(width) * size_t(height);
+        if (stbi_is_hdr_from_memory(bytes.data(), size)) {
+            std::unique_ptr<float, StbiFree> pixels(
+                stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 4));
+            if (pixels) image.rgba32f.assign(pixels.get(), pixels.get() + count);
+        } else {
+            std::unique_ptr<uint8_t, StbiFree> pixels(
+                stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4));
+            if (pixels) image.rgba8.assign(pixels.get(), pixels.get() + count);
+        }
+        if (image.rgba8.empty() && image.rgba32f.empty())
+            fail_input("{}: the image is damaged or truncated ({})", where, stbi_failure_reason());
+    }
+    check_finite(image, where);
+    return image;
+}
+
+ImageDescription read_image_file(const std::filesystem::path& file) {
+    std::vector<std::byte> bytes = read_whole_file(file);
+    ImageDescription image =
+        decode_image({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, file.string());
+    image.name = file.filename().string();
+    return image;
+}
+
+}  // namespace etendue
