@@ -185,7 +185,7 @@ CLI::App* add_classes(CLI::App& app, ClassesOptions& options) {
 
 // CLI11 calls a missing value by its type's name.
 std::string readable(std::string message) {
-    if (size_t at = message.find("required TEXT missing"); at != std::string::npos)
+    if (size_t at = message.find("1 required TEXT missing"); at != std::string::npos)
         message.replace(at, std::string::npos, "value is missing");
     return message;
 }

@@ -1,0 +1,96 @@
+// Image textures, filtered in linear light. Texel centres stand at half-integers, v runs down from the top row, as in
+// glTF. Packed by host/scene/texture_pack.h: 8-bit images keep their bytes and are decoded here.
+//
+// Macros that may be set in front: HAS_TEXTURES (0: every texture_value is one), TEXTURE_FORMATS (the formats to
+// compile, a bit each), texel_at(i) (word i of the texels, where they are not in the buffer Texels).
+
+#if !HAS_TEXTURES
+
+vec4 texture_value(TextureRef ref, vec2 uv0, vec2 uv1) { return vec4(1); }
+
+#else
+
+// One use of an image by a material. The host fills TextureRecord, its twin.
+struct Texture {
+    uint first;            // word of its first texel
+    uint width, height;
+    uint format_and_wrap;  // bits 0-1 format, 2-3 wrap of u, 4-5 wrap of v, 6 nearest
+    vec4 uv_matrix;        // rows: u' = dot(xy, uv) + offset.x, v' = dot(zw, uv) + offset.y
+    vec2 uv_offset;
+    uint uv_set;           // 0 or 1
+    uint padding;
+};
+
+const uint TEXTURE_DATA8 = 0u;   // a word a texel, linear
+const uint TEXTURE_SRGB8 = 1u;   // a word a texel, colors encoded as sRGB, alpha linear
+const uint TEXTURE_FLOAT = 2u;   // four words a texel, linear
+const uint WRAP_REPEAT = 0u;
+const uint WRAP_CLAMP = 1u;
+const uint WRAP_MIRROR = 2u;
+
+#ifndef TEXTURE_FORMATS
+#define TEXTURE_FORMATS 7
+#endif
+#define HAS_TEXTURE_FORMAT(format) (((TEXTURE_FORMATS >> format) & 1u) != 0u)
+
+layout(scalar, set = 0) readonly buffer Textures { Texture texture_records[]; };
+#ifndef texel_at
+layout(scalar, set = 0) readonly buffer Texels { uint texels[]; };
+#define texel_at(i) texels[i]
+#endif
+
+// sRGB to linear (IEC 61966-2-1): t^2.4 as t² t^0.4, the latter a polynomial in the fourth root of t. Relative error
+// 2e-6 for the 256 values that occur; drivers' pow is worse and dearer.
+vec3 linear_from_srgb(vec3 c) {
+    vec3 t = (c + 0.055) * (1.0 / 1.055);
+    vec3 q = sqrt(sqrt(t));
+    vec3 p = -0.0206792997 + q * (0.299815802 + q * (0.906143084 + q * (-0.229116813 + q * 0.0438372272)));
+    return mix(t * t * p, c * (1.0 / 12.92), lessThanEqual(c, vec3(0.04045)));
+}
+
+vec4 texel_value(Texture t, uint x, uint y) {
+    uint format = t.format_and_wrap & 3u;
+    uint texel = y * t.width + x;
+    if (HAS_TEXTURE_FORMAT(TEXTURE_FLOAT) && format == TEXTURE_FLOAT) {
+        uint at = t.first + 4u * texel;
+        return uintBitsToFloat(uvec4(texel_at(at), texel_at(at + 1u), texel_at(at + 2u), texel_at(at + 3u)));
+    }
+    vec4 value = vec4(1);
+    if (HAS_TEXTURE_FORMAT(TEXTURE_DATA8) || HAS_TEXTURE_FORMAT(TEXTURE_SRGB8))
+        value = unpackUnorm4x8(texel_at(t.first + texel));
+    if (HAS_TEXTURE_FORMAT(TEXTURE_SRGB8) && format == TEXTURE_SRGB8) value.rgb = linear_from_srgb(value.rgb);
+    return value;
+}
+
+// The two texels beside coordinate u on an axis of `size` texels, and the weight of the second. The coordinate is
+// brought into [0, 1] first; at the ends the neighbour is the other end's texel (repeat) or the same one again.
+void texel_pair(float u, uint size, uint wrap, bool nearest, out uvec2 pair, out float weight) {
+    float folded = 1.0 - abs(u - 2.0 * floor(0.5 * u) - 1.0);
+    float inside = wrap == WRAP_REPEAT ? u - floor(u) : wrap == WRAP_MIRROR ? folded : clamp(u, 0.0, 1.0);
+    float x = inside * float(size) - (nearest ? 0.0 : 0.5);
+    int last = int(size) - 1;
+    int low = clamp(int(floor(x)), -1, last);
+    int high = nearest ? low : low + 1;
+    weight = nearest ? 0.0 : x - float(low);
+    low = low < 0 ? (wrap == WRAP_REPEAT ? last : 0) : low;
+    high = high > last ? (wrap == WRAP_REPEAT ? 0 : last) : high;
+    pair = uvec2(low, high);
+}
+
+// RGBA of a texture at a surface point with texture coordinates uv0 and uv1; one where there is no texture.
+vec4 texture_value(TextureRef ref, vec2 uv0, vec2 uv1) {
+    if (ref.index == NO_RECORD) return vec4(1);
+    Texture t = texture_records[ref.index];
+    vec2 set = t.uv_set == 0u ? uv0 : uv1;
+    vec2 uv = vec2(dot(t.uv_matrix.xy, set), dot(t.uv_matrix.zw, set)) + t.uv_offset;
+    bool nearest = (t.format_and_wrap & 64u) != 0u;
+    uvec2 x, y;
+    vec2 weight;
+    texel_pair(uv.x, t.width, (t.format_and_wrap >> 2) & 3u, nearest, x, weight.x);
+    texel_pair(uv.y, t.height, (t.format_and_wrap >> 4) & 3u, nearest, y, weight.y);
+    vec4 upper = mix(texel_value(t, x.x, y.x), texel_value(t, x.y, y.x), weight.x);
+    vec4 lower = mix(texel_value(t, x.x, y.y), texel_value(t, x.y, y.y), weight.x);
+    return mix(upper, lower, weight.y);
+}
+
+#endif
