@@ -1,10 +1,19 @@
 // Rays through the scene's hierarchy: the nearest hit, or any.
 //
 // On a CPU driver the lanes of a subgroup walk their rays together, so a step of the walk does at most one inner
-// node and at most one primitive for each lane, and pushes and pops by selects instead of branches. BVH_STACK_SIZE
-// holds the deepest way down (host/scene/bvh.h).
+// node and at most one primitive for each lane, and pushes and pops by selects instead of branches.
 
 #include "lib/bvh.glsl"
+
+// Entries of the stack: the deepest way down (bvh_max_depth of host/scene/bvh.h) and what marks its ends, twice with
+// instances. The host may know that less is enough.
+#ifndef BVH_STACK_SIZE
+#if HAS_INSTANCES
+#define BVH_STACK_SIZE 100
+#else
+#define BVH_STACK_SIZE 50
+#endif
+#endif
 
 struct Hit {
     float t;         // along the ray, in lengths of its direction

@@ -1,0 +1,268 @@
+// Primitives in world space: the point a ray has hit, with its error bound, normals and vertex attributes; points on
+// emissive primitives with their pdf.
+#include "lib/bvh.glsl"
+#include "lib/traversal.glsl"
+
+struct SurfacePoint {
+    vec3 position;
+    vec3 error;             // bound of the distance from the exact surface, per axis, m
+    vec3 geometric_normal;  // unit; the side that emits
+    vec3 shading_normal;    // unit, on the side of the geometric normal
+    vec4 tangent;           // along increasing u, not unit; w = handedness of the bitangent, ±1
+    vec2 uv0, uv1;
+    vec4 color;             // linear
+    uint material;
+    uint light;             // index into the list of lights, NO_RECORD where it does not emit
+};
+
+#if HAS_VERTEX_ATTRIBUTES
+struct Vertex {
+    vec3 normal;   // unit; zero = take the geometric one
+    uint color;    // four 8-bit fractions, linear
+    vec4 tangent;  // unit, w = ±1; zero = derive it from uv0
+    vec2 uv0, uv1;
+};
+#ifndef vertex_at
+layout(scalar) readonly buffer Vertices { Vertex vertices[]; };
+#define vertex_at(i) vertices[i]
+#endif
+#ifndef triangle_indices_at
+layout(scalar) readonly buffer TriangleIndices { uvec3 triangle_indices[]; };
+#define triangle_indices_at(i) triangle_indices[i]
+#endif
+#endif
+
+vec3 absolute_map(mat4x3 m, vec3 v, float w) {
+    return abs(m[0]) * abs(v.x) + abs(m[1]) * abs(v.y) + abs(m[2]) * abs(v.z) + abs(m[3]) * w;
+}
+
+float transform_determinant(Transform m) {
+    mat4x3 w = m.world_from_local;
+    return dot(cross(w[0], w[1]), w[2]);
+}
+
+// From world to local the inverse transpose, up to length.
+vec3 normal_to_world(Transform m, vec3 n) { return n * mat3(m.local_from_world); }
+vec3 normal_to_local(Transform m, vec3 n) { return n * mat3(m.world_from_local); }
+
+// World area per local area at a point with this normal (local, unit).
+float area_factor(Transform m, vec3 n) { return abs(transform_determinant(m)) * length(normal_to_world(m, n)); }
+
+// The error bound of a mapped point: its own mapped, what the map rounds (pbrt 4ed. 6.8.5), and what mapping back
+// will round when a ray that starts there is intersected in the local frame again.
+vec3 map_error(Transform m, vec3 local, vec3 local_error, vec3 world) {
+    vec3 back = gamma(5.0) * absolute_map(m.local_from_world, world, 1.0);
+    return absolute_map(m.world_from_local, (1.0 + gamma(5.0)) * local_error + back, 0.0) +
+           gamma(5.0) * absolute_map(m.world_from_local, local, 1.0);
+}
+
+#if HAS_VERTEX_ATTRIBUTES
+// Direction of increasing u over the triangle; zero where uv0 does not span it.
+vec3 tangent_from_uv(Triangle r, vec2 uv_0, vec2 uv_1, vec2 uv_2, out float handedness) {
+    vec2 d1 = uv_1 - uv_0, d2 = uv_2 - uv_0;
+    float det = d1.x * d2.y - d1.y * d2.x;
+    // The bitangent runs along decreasing v: image rows count downward.
+    handedness = det < 0.0 ? 1.0 : -1.0;
+    return (d2.y * (r.v1 - r.v0) - d1.y * (r.v2 - r.v0)) * sign(det);
+}
+#endif
+
+// What the ray has hit. `hit.primitive` must not be NO_RECORD.
+SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
+    Triangle r = primitive_at(hit.primitive);
+    SurfacePoint s;
+    s.material = r.material;
+    s.light = r.light;
+    s.color = vec4(1.0);
+    LocalPoint p;
+    vec3 shading = vec3(0);
+    uint transform = NO_RECORD;
+#if HAS_SHAPES
+    Transform m;
+    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+        transform = floatBitsToUint(r.v0.y);
+        m = transform_at(transform);
+        p = geometry_locate(floatBitsToUint(r.v0.x), m.local_from_world * vec4(origin, 1.0),
+                            m.local_from_world * vec4(direction, 0.0), GeometryHit(hit.t, hit.uv));
+        s.uv0 = s.uv1 = p.uv;
+        s.tangent = vec4(p.tangent, 1.0);
+    }
+#endif
+#if HAS_TRIANGLES
+    if (attributes_kind(r.attributes) == KIND_TRIANGLE) {
+        p = triangle_locate(r, origin, direction, GeometryHit(hit.t, hit.uv));
+        s.uv0 = s.uv1 = vec2(0);
+        s.tangent = vec4(p.tangent, 1.0);
+#if HAS_VERTEX_ATTRIBUTES
+        uvec3 indices = triangle_indices_at(attributes_index(r.attributes));
+        Vertex a = vertex_at(indices.x), b = vertex_at(indices.y), c = vertex_at(indices.z);
+        vec3 weights = vec3(1.0 - hit.uv.x - hit.uv.y, hit.uv);
+        shading = mat3(a.normal, b.normal, c.normal) * weights;
+        s.uv0 = mat3x2(a.uv0, b.uv0, c.uv0) * weights;
+        s.uv1 = mat3x2(a.uv1, b.uv1, c.uv1) * weights;
+        s.color = mat3x4(unpackUnorm4x8(a.color), unpackUnorm4x8(b.color), unpackUnorm4x8(c.color)) * weights;
+        float handedness;
+        vec3 derived = tangent_from_uv(r, a.uv0, b.uv0, c.uv0, handedness);
+        bool stored = a.tangent.w != 0.0;
+        vec4 tangent = stored ? vec4(mat3(a.tangent.xyz, b.tangent.xyz, c.tangent.xyz) * weights, a.tangent.w)
+                              : vec4(derived, handedness);
+        if (dot(tangent.xyz, tangent.xyz) > 0.0) s.tangent = tangent;
+#endif
+#if HAS_INSTANCES
+        if (hit.instance != NO_RECORD) transform = floatBitsToUint(primitive_at(hit.instance).v0.y);
+#endif
+    }
+#endif
+    s.position = p.position;
+    s.error = p.error;
+    s.geometric_normal = p.normal;
+#if HAS_SHAPES || HAS_INSTANCES
+    if (transform != NO_RECORD) {
+        Transform to_world = transform_at(transform);
+        s.position = to_world.world_from_local * vec4(p.position, 1.0);
+        s.error = map_error(to_world, p.position, p.error, s.position);
+        s.geometric_normal = normalize(normal_to_world(to_world, p.normal));
+        shading = normal_to_world(to_world, shading);
+        s.tangent.xyz = mat3(to_world.world_from_local) * s.tangent.xyz;
+        s.tangent.w *= transform_determinant(to_world) < 0.0 ? -1.0 : 1.0;
+    }
+#endif
+    float length2 = dot(shading, shading);
+    s.shading_normal = length2 > 0.0 ? shading * inversesqrt(length2) : s.geometric_normal;
+    if (dot(s.shading_normal, s.geometric_normal) < 0.0) s.shading_normal = -s.shading_normal;
+    return s;
+}
+
+// The next float away from zero offset, in the direction of `towards`.
+float next_float(float x, float towards) {
+    if (towards == 0.0) return x;
+    if (abs(x) < 1e-37) return towards > 0.0 ? 1e-37 : -1e-37;
+    int bits = floatBitsToInt(x);
+    return intBitsToFloat((x > 0.0) == (towards > 0.0) ? bits + 1 : bits - 1);
+}
+
+// Where a ray along `direction` leaves a surface: off it by the error bound, along the geometric normal, rounded
+// away from it (pbrt 4ed. 6.8.6).
+vec3 offset_origin(vec3 position, vec3 error, vec3 normal, vec3 direction) {
+    vec3 offset = dot(abs(normal), error) * normal;
+    if (dot(direction, normal) < 0.0) offset = -offset;
+    vec3 p = position + offset;
+    return vec3(next_float(p.x, offset.x), next_float(p.y, offset.y), next_float(p.z, offset.z));
+}
+
+// Emissive primitives: triangles in world space, or shapes. All pdfs are per world area, 1/m².
+
+GeometrySample primitive_sample_towards(uint primitive, vec3 reference, vec2 u) {
+    Triangle r = primitive_at(primitive);
+    GeometrySample s = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
+#if HAS_SHAPES
+    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+        Transform m = transform_at(floatBitsToUint(r.v0.y));
+        s = geometry_sample_towards(floatBitsToUint(r.v0.x), m.local_from_world * vec4(reference, 1.0), u);
+        s.pdf /= area_factor(m, s.normal);
+        s.position = m.world_from_local * vec4(s.position, 1.0);
+        s.normal = normalize(normal_to_world(m, s.normal));
+    }
+#endif
+#if HAS_TRIANGLES
+    if (attributes_kind(r.attributes) == KIND_TRIANGLE) s = triangle_sample_towards(r, reference, u);
+#endif
+    return s;
+}
+
+float primitive_pdf_towards(uint primitive, vec3 reference, vec3 position, vec3 normal) {
+    Triangle r = primitive_at(primitive);
+    float pdf = 0.0;
+#if HAS_SHAPES
+    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+        Transform m = transform_at(floatBitsToUint(r.v0.y));
+        vec3 n = normalize(normal_to_local(m, normal));
+        pdf = geometry_pdf_towards(floatBitsToUint(r.v0.x), m.local_from_world * vec4(reference, 1.0),
+                                   m.local_from_world * vec4(position, 1.0), n) / area_factor(m, n);
+    }
+#endif
+#if HAS_TRIANGLES
+    if (attributes_kind(r.attributes) == KIND_TRIANGLE) pdf = triangle_pdf_towards(r, reference, position, normal);
+#endif
+    return pdf;
+}
+
+// For a shape under a map that is no similarity the mean of the area factor over 8 x 8 points: no closed form.
+float primitive_area(uint primitive) {
+    Triangle r = primitive_at(primitive);
+    float area = 0.0;
+#if HAS_SHAPES
+    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+        uint ref = floatBitsToUint(r.v0.x);
+        Transform m = transform_at(floatBitsToUint(r.v0.y));
+        for (uint i = 0u; i < 64u; i++) {
+            vec2 u = (vec2(i & 7u, i >> 3) + 0.5) * 0.125;
+            area += area_factor(m, geometry_sample(ref, u).normal);
+        }
+        area *= geometry_area(ref) / 64.0;
+    }
+#endif
+#if HAS_TRIANGLES
+    if (attributes_kind(r.attributes) == KIND_TRIANGLE) area = triangle_area(r);
+#endif
+    return area;
+}
+
+void primitive_bounds(uint primitive, out vec3 lo, out vec3 hi) {
+    Triangle r = primitive_at(primitive);
+    lo = vec3(INFINITY), hi = vec3(-INFINITY);
+#if HAS_SHAPES
+    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+        mat4x3 m = transform_at(floatBitsToUint(r.v0.y)).world_from_local;
+        vec3 local_lo, local_hi;
+        geometry_bounds(floatBitsToUint(r.v0.x), local_lo, local_hi);
+        vec3 center = 0.5 * (local_lo + local_hi), half_size = 0.5 * (local_hi - local_lo);
+        vec3 world = m * vec4(center, 1.0);
+        vec3 reach = absolute_map(m, half_size, 0.0) + gamma(8.0) * absolute_map(m, abs(center) + half_size, 1.0);
+        lo = world - reach, hi = world + reach;
+    }
+#endif
+#if HAS_TRIANGLES
+    if (attributes_kind(r.attributes) == KIND_TRIANGLE) triangle_bounds(r, lo, hi);
+#endif
+}
+
+// Texture coordinates of a point on the primitive.
+void primitive_uv(uint primitive, vec3 position, out vec2 uv0, out vec2 uv1) {
+    uv0 = vec2(0), uv1 = vec2(0);
+    Triangle r = primitive_at(primitive);
+#if HAS_SHAPES
+    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+        // A short ray through the point along each axis; the one that meets the surface nearest to it tells.
+        uint ref = floatBitsToUint(r.v0.x);
+        vec3 p = transform_at(floatBitsToUint(r.v0.y)).local_from_world * vec4(position, 1.0);
+        vec3 lo, hi;
+        geometry_bounds(ref, lo, hi);
+        vec3 size = hi - lo;
+        float reach = 1e-3 * max_component3(size);
+        float best = INFINITY;
+        for (uint axis = 0u; axis < 3u; axis++) {
+            vec3 direction = vec3(axis == 0u, axis == 1u, axis == 2u) * reach;
+            GeometryHit hit;
+            if (geometry_intersect(ref, p - direction, direction, 2.0, hit) && abs(hit.t - 1.0) < best) {
+                best = abs(hit.t - 1.0);
+                uv0 = geometry_locate(ref, p - direction, direction, hit).uv;
+            }
+        }
+        uv1 = uv0;
+    }
+#endif
+#if HAS_TRIANGLES && HAS_VERTEX_ATTRIBUTES
+    if (attributes_kind(r.attributes) == KIND_TRIANGLE) {
+        vec3 e1 = r.v1 - r.v0, e2 = r.v2 - r.v0, d = position - r.v0;
+        vec3 n = cross(e1, e2);
+        float inverse = 1.0 / dot(n, n);
+        float b1 = dot(cross(d, e2), n) * inverse, b2 = dot(cross(e1, d), n) * inverse;
+        vec3 weights = vec3(1.0 - b1 - b2, b1, b2);
+        uvec3 indices = triangle_indices_at(attributes_index(r.attributes));
+        Vertex a = vertex_at(indices.x), b = vertex_at(indices.y), c = vertex_at(indices.z);
+        uv0 = mat3x2(a.uv0, b.uv0, c.uv0) * weights;
+        uv1 = mat3x2(a.uv1, b.uv1, c.uv1) * weights;
+    }
+#endif
+}
