@@ -107,6 +107,9 @@ Cut sweep_split(std::span<Item> items) {
     };
     Cut best;
     int best_axis = 2;
+    const auto off_middle = [&](uint32_t i) {
+        return std::abs(static_cast<int>(2 * i) - static_cast<int>(items.size()));
+    };
     std::array<double, sweep_size> right_cost{};
     for (int axis = 0; axis < 3; axis++) {
         sort_along(axis);
@@ -119,7 +122,8 @@ Cut sweep_split(std::span<Item> items) {
         for (uint32_t i = 1; i < items.size(); i++) {
             box.grow(items[i - 1].box);
             const double cost = half_area(box) * i + right_cost[i];
-            if (cost < best.cost) best = {cost, i}, best_axis = axis;
+            const bool more_even = cost == best.cost && off_middle(i) < off_middle(best.left);
+            if (cost < best.cost || more_even) best = {cost, i}, best_axis = axis;
         }
     }
     if (best_axis != 2) sort_along(best_axis);

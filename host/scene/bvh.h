@@ -75,8 +75,8 @@ constexpr uint32_t bvh_header_entries = 2;
 uint32_t encode_bvh(const Bvh& bvh, NodeFormat format, uint32_t first_primitive,
                     std::vector<glm::uvec4>& entries);
 
-// How much rounding to the 16-bit grid raises the tree's expected cost (1 = not at all). From about 1.2 on
-// float nodes are faster.
-double quantisation_overhead(const Bvh& bvh);
+// Share of the leaves whose boxes more than double in area by rounding to the 16-bit grid. From about a tenth
+// on rays that go there are faster with float nodes.
+double coarse_share(const Bvh& bvh);
 
 }  // namespace etendue

@@ -74,11 +74,12 @@ uint32_t encode_bvh(const Bvh& bvh, NodeFormat format, uint32_t first_primitive,
     return header;
 }
 
-double quantisation_overhead(const Bvh& bvh) {
+double coarse_share(const Bvh& bvh) {
     const Grid grid(bvh.bounds);
-    double exact = 0, rounded = 0;
+    uint64_t leaves = 0, coarse = 0;
     for (const BvhNode& node : bvh.nodes) {
         for (int i = 0; i < 2; i++) {
+            if (!bvh_is_leaf(node.child[i])) continue;
             glm::dvec3 d, q;
             for (int axis = 0; axis < 3; axis++) {
                 const float lo = node.bounds[i].lo[axis], hi = node.bounds[i].hi[axis];
@@ -86,12 +87,11 @@ double quantisation_overhead(const Bvh& bvh) {
                 q[axis] = static_cast<double>(grid.up(hi, axis) - grid.down(lo, axis)) /
                           static_cast<double>(grid.inverse_cell[axis]);
             }
-            const double weight = bvh_is_leaf(node.child[i]) ? bvh_leaf_count(node.child[i]) : 1.0;
-            exact += weight * (d.x * d.y + d.y * d.z + d.z * d.x);
-            rounded += weight * (q.x * q.y + q.y * q.z + q.z * q.x);
+            leaves++;
+            coarse += q.x * q.y + q.y * q.z + q.z * q.x > 2 * (d.x * d.y + d.y * d.z + d.z * d.x);
         }
     }
-    return exact > 0 ? rounded / exact : 1.0;
+    return leaves > 0 ? static_cast<double>(coarse) / static_cast<double>(leaves) : 0.0;
 }
 
 }  // namespace etendue

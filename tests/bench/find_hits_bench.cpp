@@ -79,10 +79,9 @@ void run(size_t triangle_count, uint32_t ray_count, int repeats) {
     for (size_t i = 0; i < soup.size(); i++)
         for (int k = 0; k < 3; k++) boxes[i].grow(soup.vertices[3 * i + k]);
     const Bvh bvh = build_bvh(boxes, std::max(1u, std::thread::hardware_concurrency()));
-    fmt::print(
-        "{} triangles: hierarchy in {:.2f} s, SAH cost {:.1f}, depth {}, quantisation overhead {:.3f}\n",
-        soup.size(), bvh.statistics.seconds, bvh.statistics.sah_cost, bvh.statistics.depth,
-        quantisation_overhead(bvh));
+    fmt::print("{} triangles: hierarchy in {:.2f} s, SAH cost {:.1f}, depth {}, {:.1f} % of leaves coarse\n",
+               soup.size(), bvh.statistics.seconds, bvh.statistics.sah_cost, bvh.statistics.depth,
+               100 * coarse_share(bvh));
     std::vector<TriangleRecord> triangles(soup.size());
     for (size_t i = 0; i < soup.size(); i++) {
         const glm::vec3* v = &soup.vertices[3 * size_t(bvh.order[i])];
