@@ -7,8 +7,10 @@
 //   float       NAME_power(R r, SceneBounds bounds)                    luminous flux sent into the scene, lm (radiant flux
 //                                     for an image in radiometric units); guides light selection and the power balance
 //   void        NAME_bounds(R r, out vec3 lo, out vec3 hi)             world box; lo > hi for a light at infinity
+//   LightCone   NAME_cone(R r)                                     directions into which it sends light
 //
 // All in world space.
+#include "lib/accurate_math.glsl"
 #include "lib/constants.glsl"
 #include "lib/spectrum.glsl"
 #include "lib/records.glsl"
@@ -44,7 +46,6 @@ struct LightCone {
 
 LightCone whole_sphere_cone() { return LightCone(vec3(0, 0, 1), -1.0, 0.0); }
 
-#include "lib/accurate_math.glsl"
 #include "generated/light_classes.glsl"
 
 LightSample light_sample_towards(uint ref, vec3 point, vec2 u) {

@@ -1,0 +1,53 @@
+// A surface that emits: one record for every emissive triangle or shape. Filled by the host from the scene's materials.
+// The emission itself, with its texture and sides, belongs to the material.
+struct AreaLight {
+    uint primitive;  // of lib/primitives.glsl
+    uint material;
+};
+
+// From a density per area at a point that is seen along `direction` to one per solid angle; 0 where it has no finite value.
+float area_solid_angle_pdf(float pdf_area, float distance_squared, float cosine) {
+    float pdf = pdf_area * distance_squared / abs(cosine);
+    return pdf > 0.0 && pdf < INFINITY ? pdf : 0.0;
+}
+
+LightSample area_sample_towards(AreaLight r, vec3 point, vec2 u) {
+    GeometrySample g = primitive_sample_towards(r.primitive, point, u);
+    vec3 d = g.position - point;
+    float distance_squared = dot(d, d);
+    if (!(distance_squared > 0.0)) return no_light_sample();
+    float distance = sqrt(distance_squared);
+    vec3 direction = d / distance;
+    float cosine = dot(g.normal, direction);
+    vec2 uv0, uv1;
+    primitive_uv(r.primitive, g.position, uv0, uv1);
+    Spectrum radiance = material_emission(r.material, cosine < 0.0, uv0, uv1);
+    return LightSample(direction, distance, radiance, area_solid_angle_pdf(g.pdf, distance_squared, cosine), false);
+}
+
+float area_pdf_towards(AreaLight r, vec3 point, vec3 direction, LightHit hit) {
+    vec3 d = hit.position - point;
+    float pdf = primitive_pdf_towards(r.primitive, point, hit.position, hit.normal);
+    return area_solid_angle_pdf(pdf, dot(d, d), dot(hit.normal, direction));
+}
+
+Spectrum area_radiance(AreaLight r, vec3 direction, LightHit hit) {
+    return material_emission(r.material, dot(hit.normal, direction) < 0.0, hit.uv0, hit.uv1);
+}
+
+float area_power(AreaLight r, SceneBounds bounds) {
+    float sides = material_emits_both_sides(r.material) ? 2.0 : 1.0;
+    return sides * PI * primitive_area(r.primitive) * luminance(material_mean_emission(r.material));
+}
+
+void area_bounds(AreaLight r, out vec3 lo, out vec3 hi) { primitive_bounds(r.primitive, lo, hi); }
+
+LightCone area_cone(AreaLight r) {
+    LightCone cone = whole_sphere_cone();
+    bool flat = attributes_kind(primitive_at(r.primitive).attributes) == KIND_TRIANGLE;
+    if (flat && !material_emits_both_sides(r.material)) {
+        cone.axis = primitive_sample_towards(r.primitive, vec3(0), vec2(0.5)).normal;
+        cone.cos_normals = 1.0;
+    }
+    return cone;
+}

@@ -1,0 +1,22 @@
+// The same radiance from every direction, from infinitely far away.
+struct ConstantEnvironment {
+    SpectrumRef radiance;  //: 1 in [0, inf) cd/m². Radiance.
+};
+
+LightSample constant_sample_towards(ConstantEnvironment r, vec3 point, vec2 u) {
+    float y = 1.0 - 2.0 * u.y;
+    vec2 around = cos_sin_turns(u.x) * sqrt(max(0.0, 4.0 * u.y * (1.0 - u.y)));
+    return LightSample(vec3(around.x, y, around.y), INFINITY, spectrum_value(r.radiance), 0.25 * INV_PI, false);
+}
+
+float constant_pdf_towards(ConstantEnvironment r, vec3 point, vec3 direction, LightHit hit) { return 0.25 * INV_PI; }
+
+Spectrum constant_radiance(ConstantEnvironment r, vec3 direction, LightHit hit) { return spectrum_value(r.radiance); }
+
+float constant_power(ConstantEnvironment r, SceneBounds bounds) {
+    return 4.0 * square(PI * bounds.radius) * luminance(spectrum_value(r.radiance));
+}
+
+void constant_bounds(ConstantEnvironment r, out vec3 lo, out vec3 hi) { lo = vec3(1), hi = vec3(-1); }
+
+LightCone constant_cone(ConstantEnvironment r) { return whole_sphere_cone(); }

@@ -1,0 +1,134 @@
+#include "tests/support/light_probe.h"
+
+#include "host/scene/environment_map.h"
+#include "host/scene/features.h"
+#include "host/scene/records.h"
+
+namespace etendue {
+namespace {
+
+const char* const sample_kernel = R"(
+    #include "interfaces/light_source.glsl"
+    #include "lib/sampler.glsl"
+    layout(local_size_x = 64) in;
+    layout(scalar, set = 0) readonly buffer Lights { uint lights[]; };
+    layout(scalar, set = 0) readonly buffer Points { vec3 points[]; };
+    struct Result { vec3 direction; float distance; vec3 radiance; float pdf; vec3 radiance_towards; float pdf_towards; uint is_delta; };
+    layout(scalar, set = 0) writeonly buffer Results { Result results[]; };
+    layout(push_constant) uniform Push { uint count, point_count, seed; };
+    void main() {
+        uint i = gl_GlobalInvocationID.x;
+        if (i >= count) return;
+        uvec3 h = hash_3d(hash_3d(uvec3(i, seed, 1u)));
+        vec3 point = points[i % point_count];
+        LightSample l = light_sample_towards(lights[0], point, vec2(h.xy >> 8) / 16777216.0);
+        LightHit hit = LightHit(point + l.direction * l.distance, vec3(0), vec2(0), vec2(0));
+        results[i] = Result(l.direction, l.distance, l.radiance, l.pdf, light_radiance(lights[0], l.direction, hit),
+                            light_pdf_towards(lights[0], point, l.direction, hit), uint(l.is_delta));
+    }
+)";
+
+const char* const evaluate_kernel = R"(
+    #include "interfaces/light_source.glsl"
+    layout(local_size_x = 64) in;
+    layout(scalar, set = 0) readonly buffer Lights { uint lights[]; };
+    layout(scalar, set = 0) readonly buffer Points { vec3 points[]; };
+    layout(scalar, set = 0) readonly buffer Directions { vec3 directions[]; };
+    layout(scalar, set = 0) writeonly buffer Results { vec4 results[]; };
+    layout(push_constant) uniform Push { uint count; };
+    void main() {
+        uint i = gl_GlobalInvocationID.x;
+        if (i >= count) return;
+        LightHit hit = LightHit(vec3(0), vec3(0), vec2(0), vec2(0));
+        results[i] = vec4(light_radiance(lights[0], directions[i], hit), light_pdf_towards(lights[0], points[0], directions[i], hit));
+    }
+)";
+
+}  // namespace
+
+ShaderSources test_sources() {
+    ShaderSources sources;
+    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    return sources;
+}
+
+LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& parameters, const glm::dmat4& placement,
+                       const ImageDescription& image) {
+    ClassRegistry registry(test_sources());
+    const ClassInfo* info = registry.find(Interface::light, class_name);
+    REQUIRE(info);
+    std::vector<glm::uvec4> texels(1);
+    SceneDescription scene;
+    const RecordResolver resolver{scene, {}, {}, [&](const std::filesystem::path&, const std::string&) {
+                                      EnvironmentMap map = build_environment_map(image);
+                                      texels = map.texels;
+                                      texels.insert(texels.begin(), glm::uvec4(0));  // `first` is not always 0
+                                      map.ref.first = 1;
+                                      return map.ref;
+                                  }};
+    RecordBuffer records;
+    records.add(*info, fill_record(*info, {class_name, parameters, "/light"}, placement, resolver));
+    records.layout();
+    records_ = create_buffer(test_device(), records.bytes(), "light records");
+    texels_ = create_buffer(test_device(), texels, "environment texels");
+    lights_ = create_buffer(test_device(), std::vector<uint32_t>{records.ref(*info, 0)}, "lights");
+    sources_ = test_sources();
+    sources_.generated["generated/light_classes.glsl"] = class_header(interface_info(Interface::light), {info});
+    Features features;
+    features.light_count = 1;
+    defines_ = features.defines();
+}
+
+Kernel LightProbe::kernel(const std::string& name, const std::string& text, BufferTable buffers) {
+    ShaderSources sources = sources_;
+    if (!text.empty()) sources.generated[name] = text;
+    CompileOptions options;
+    options.defines = defines_;
+    buffers["LightRecords"] = &records_;
+    buffers["EnvironmentTexels"] = &texels_;
+    buffers["Lights"] = &lights_;
+    return Kernel(test_device(), compile_shader(sources, name, options), buffers);
+}
+
+static std::vector<ProbeSample> run_samples(const Kernel& kernel, Buffer& out, uint32_t count, uint32_t points, uint32_t seed) {
+    CommandList list(test_device());
+    list.dispatch(kernel, (count + 63) / 64, {{"count", count}, {"point_count", points}, {"seed", seed}});
+    list.run();
+    return out.read_array<ProbeSample>(count);
+}
+
+std::vector<ProbeSample> LightProbe::sample(glm::vec3 point, uint32_t count, uint32_t seed) {
+    Buffer points = create_buffer(test_device(), std::vector<glm::vec3>{point}, "points");
+    Buffer out(test_device(), uint64_t(count) * sizeof(ProbeSample), "results");
+    return run_samples(kernel("sample_light", sample_kernel, {{"Points", &points}, {"Results", &out}}), out, count, 1, seed);
+}
+
+std::vector<ProbeSample> LightProbe::sample_at(const std::vector<glm::vec3>& at) {
+    const uint32_t count = uint32_t(at.size());
+    Buffer points = create_buffer(test_device(), at, "points");
+    Buffer out(test_device(), uint64_t(count) * sizeof(ProbeSample), "results");
+    return run_samples(kernel("sample_light", sample_kernel, {{"Points", &points}, {"Results", &out}}), out, count, count, 0);
+}
+
+std::vector<ProbeValue> LightProbe::evaluate(glm::vec3 point, const std::vector<glm::vec3>& directions) {
+    const uint32_t count = uint32_t(directions.size());
+    Buffer points = create_buffer(test_device(), std::vector<glm::vec3>{point}, "points");
+    Buffer along = create_buffer(test_device(), directions, "directions");
+    Buffer out(test_device(), uint64_t(count) * sizeof(ProbeValue), "results");
+    const Kernel evaluate = kernel("evaluate_light", evaluate_kernel, {{"Points", &points}, {"Directions", &along}, {"Results", &out}});
+    CommandList list(test_device());
+    list.dispatch(evaluate, (count + 63) / 64, {{"count", count}});
+    list.run();
+    return out.read_array<ProbeValue>(count);
+}
+
+LightBounds LightProbe::measure(float scene_radius) {
+    Buffer out(test_device(), sizeof(LightBounds), "light bounds");
+    const Kernel measure = kernel("kernels/measure_lights.comp", "", {{"LightBoundsTable", &out}});
+    CommandList list(test_device());
+    list.dispatch(measure, 1, {{"light_count", 1u}, {"scene_x", 0.0f}, {"scene_y", 0.0f}, {"scene_z", 0.0f}, {"scene_radius", scene_radius}});
+    list.run();
+    return out.read_array<LightBounds>(1)[0];
+}
+
+}  // namespace etendue
