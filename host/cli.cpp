@@ -20,8 +20,8 @@ const char* overview =
 
 // Arguments as text; CLI11's own conversions take NaN, hexadecimal and trailing characters for numbers.
 struct RenderArguments {
-    std::string passes, seconds, error, size, seed = "0", algorithm = "auto", color = "auto",
-                                              polarization = "auto";
+    std::optional<std::string> passes, seconds, error, size;
+    std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto";
 };
 
 uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most) {
@@ -122,15 +122,15 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
 
 void finish_render(RenderOptions& options, const RenderArguments& arguments, std::string command_line) {
     if (options.scene.empty()) fail_input("SCENE is empty (see etendue render --help)");
-    if (!arguments.passes.empty())
-        options.passes = parse_count(arguments.passes, "--passes", 1, uint64_t(1) << 31);
-    else if (!arguments.seconds.empty())
-        options.seconds = parse_positive(arguments.seconds, "--time", ", in seconds");
-    else if (!arguments.error.empty())
-        options.error = parse_positive(arguments.error, "--error", "");
+    if (arguments.passes)
+        options.passes = parse_count(*arguments.passes, "--passes", 1, uint64_t(1) << 31);
+    else if (arguments.seconds)
+        options.seconds = parse_positive(*arguments.seconds, "--time", ", in seconds");
+    else if (arguments.error)
+        options.error = parse_positive(*arguments.error, "--error", "");
     else
         options.passes = 64;
-    if (!arguments.size.empty()) options.size = parse_size(arguments.size);
+    if (arguments.size) options.size = parse_size(*arguments.size);
     options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
     options.algorithm =
         parse_choice<Algorithm>(arguments.algorithm, "--algorithm",
@@ -147,7 +147,7 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.command_line = std::move(command_line);
 }
 
-CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::string& max_relmse) {
+CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::optional<std::string>& max_relmse) {
     CLI::App* compare =
         app.add_subcommand("compare", "Compare an image with a reference: relMSE, RMSE, bias, worst pixels");
     compare->add_option("A.exr", options.image, "Image")->required()->option_text(" ");
@@ -207,7 +207,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     RenderOptions render_options;
     RenderArguments render_arguments;
     CompareOptions compare_options;
-    std::string max_relmse;
+    std::optional<std::string> max_relmse;
     InspectOptions inspect_options;
     ClassesOptions classes_options;
     CLI::App* render = add_render(app, render_options, render_arguments);
@@ -247,7 +247,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         return render_options;
     }
     if (compare->parsed()) {
-        if (!max_relmse.empty()) compare_options.max_relmse = parse_positive(max_relmse, "--max-relmse", "");
+        if (max_relmse) compare_options.max_relmse = parse_positive(*max_relmse, "--max-relmse", "");
         return compare_options;
     }
     if (inspect->parsed()) return inspect_options;

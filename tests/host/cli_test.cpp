@@ -1,0 +1,118 @@
+// The command line: what it understands, and one line for what it does not.
+#include "host/cli.h"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "host/error.h"
+
+using namespace etendue;
+
+namespace {
+
+CommandLine parse(std::vector<const char*> words) {
+    words.insert(words.begin(), "etendue");
+    return parse_command_line(int(words.size()), words.data());
+}
+
+std::string complaint(std::vector<const char*> words) {
+    try {
+        parse(std::move(words));
+    } catch (const Error& e) {
+        CHECK(e.code == ExitCode::bad_input);
+        CHECK(std::string(e.what()).find('\n') == std::string::npos);
+        return e.what();
+    }
+    return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("a render without options runs 64 passes into the scene's name in the current folder") {
+    auto options = std::get<RenderOptions>(parse({"render", "models/box.glb"}));
+    CHECK(options.scene == "models/box.glb");
+    CHECK(options.output == "box.exr");
+    CHECK(options.passes == 64);
+    CHECK(!options.seconds);
+    CHECK(!options.error);
+    CHECK(options.command_line == "etendue render models/box.glb");
+}
+
+TEST_CASE("every option of render is understood") {
+    auto o = std::get<RenderOptions>(
+        parse({"render",         "a.gltf",  "-o",          "b c.exr",  "--error",      "1e-2",
+               "--size",         "640x480", "--receiver",  "left",     "--seed",       "9",
+               "--environment",  "sky.hdr", "--algorithm", "backward", "--color",      "rgb",
+               "--polarization", "off",     "--device",    "1",        "--checkpoint", "c",
+               "--resume",       "r",       "--stats",     "s.json",   "--shaders",    "dir",
+               "--aovs",         "--quiet"}));
+    CHECK(o.output == "b c.exr");
+    CHECK(o.error == 1e-2);
+    CHECK(!o.passes);
+    CHECK(o.size->width == 640);
+    CHECK(o.size->height == 480);
+    CHECK(o.receiver == "left");
+    CHECK(o.seed == 9);
+    CHECK(o.environment == "sky.hdr");
+    CHECK(o.algorithm == Algorithm::backward);
+    CHECK(o.color == ColorMode::rgb);
+    CHECK(o.polarization == PolarizationMode::off);
+    CHECK(o.device == "1");
+    CHECK(o.checkpoint == "c");
+    CHECK(o.resume == "r");
+    CHECK(o.stats == "s.json");
+    CHECK(o.shaders == "dir");
+    CHECK(o.aovs);
+    CHECK(o.quiet);
+    CHECK(o.command_line.starts_with("etendue render a.gltf -o 'b c.exr' --error"));
+}
+
+TEST_CASE("passes, time and error exclude each other") {
+    CHECK(complaint({"render", "a.gltf", "--passes", "1", "--time", "1"}) ==
+          "--passes excludes --time (see etendue render --help)");
+    CHECK(complaint({"render", "a.gltf", "--time", "1", "--error", "1"}) != "no error");
+}
+
+TEST_CASE("numbers that are none, out of range or not finite are refused") {
+    for (const char* passes : {"0", "-3", "1.5", "0x10", "nan", "1e3", "", "99999999999999999999"})
+        CHECK(complaint({"render", "a.gltf", "--passes", passes}) != "no error");
+    for (const char* seconds : {"0", "-1", "nan", "inf", "1s"})
+        CHECK(complaint({"render", "a.gltf", "--time", seconds}) != "no error");
+    for (const char* size : {"640", "0x480", "640x", "x480", "640x480x3", "-4x4", "70000x4"})
+        CHECK(complaint({"render", "a.gltf", "--size", size}) != "no error");
+    for (const char* limit : {"0", "nan", "abc"})
+        CHECK(complaint({"compare", "a", "b", "--max-relmse", limit}) != "no error");
+}
+
+TEST_CASE("wrong usage is one line that says what is allowed") {
+    CHECK(complaint({}) ==
+          "no command given; one of: render, compare, inspect, classes, devices (see etendue --help)");
+    CHECK(complaint({"paint"}).starts_with("no command 'paint'; one of: render,"));
+    CHECK(complaint({"render"}) == "SCENE is required (see etendue render --help)");
+    CHECK(complaint({"render", ""}) == "SCENE is empty (see etendue render --help)");
+    CHECK(complaint({"render", "a.gltf", "--algorithm", "forward"}) ==
+          "--algorithm forward: not available; allowed: auto, backward");
+    CHECK(complaint({"render", "a.gltf", "-o", "a.jpg"}).ends_with("the name must end in .exr"));
+    CHECK(complaint({"render", "a.gltf", "--passes"}) ==
+          "--passes: value is missing (see etendue render --help)");
+    CHECK(complaint({"render", "a.gltf", "--bogus"}) ==
+          "The following argument was not expected: --bogus (see etendue render --help)");
+    CHECK(complaint({"compare", "a.exr"}) != "no error");
+    CHECK(complaint({"devices", "extra"}) != "no error");
+}
+
+TEST_CASE("help and version are answers, not errors") {
+    CHECK(std::get<TextAnswer>(parse({"--version"})).text.starts_with("etendue "));
+    CHECK(std::get<TextAnswer>(parse({"--help"})).text.find("compare") != std::string::npos);
+    CHECK(std::get<TextAnswer>(parse({"render", "--help"})).text.find("Usage: etendue render") !=
+          std::string::npos);
+}
+
+TEST_CASE("the other commands are understood") {
+    CHECK(std::get<CompareOptions>(parse({"compare", "a", "b", "--max-relmse", "1e-3"})).max_relmse == 1e-3);
+    CHECK(std::get<InspectOptions>(parse({"inspect", "a.gltf", "--device", "llvmpipe"})).device ==
+          "llvmpipe");
+    CHECK(std::get<ClassesOptions>(parse({"classes", "sphere"})).name == "sphere");
+    CHECK(std::holds_alternative<DevicesOptions>(parse({"devices"})));
+}
