@@ -1,5 +1,8 @@
 // A surface that emits: one record for every emissive triangle or shape. Filled by the host from the scene's materials.
 // The emission itself, with its texture and sides, belongs to the material.
+#include "lib/materials.glsl"
+#include "lib/primitives.glsl"
+
 struct AreaLight {
     uint primitive;  // of lib/primitives.glsl
     uint material;
@@ -19,8 +22,8 @@ LightSample area_sample_towards(AreaLight r, vec3 point, vec2 u) {
     float distance = sqrt(distance_squared);
     vec3 direction = d / distance;
     float cosine = dot(g.normal, direction);
-    vec2 uv0, uv1;
-    primitive_uv(r.primitive, g.position, uv0, uv1);
+    vec2 uv0 = vec2(0), uv1 = vec2(0);
+    if (materials[r.material].emission_texture.index != NO_RECORD) primitive_uv(r.primitive, g.position, uv0, uv1);
     Spectrum radiance = material_emission(r.material, cosine < 0.0, uv0, uv1);
     return LightSample(direction, distance, radiance, area_solid_angle_pdf(g.pdf, distance_squared, cosine), false);
 }
@@ -44,8 +47,8 @@ void area_bounds(AreaLight r, out vec3 lo, out vec3 hi) { primitive_bounds(r.pri
 
 LightCone area_cone(AreaLight r) {
     LightCone cone = whole_sphere_cone();
-    bool flat = attributes_kind(primitive_at(r.primitive).attributes) == KIND_TRIANGLE;
-    if (flat && !material_emits_both_sides(r.material)) {
+    bool planar = attributes_kind(primitive_at(r.primitive).attributes) == KIND_TRIANGLE;
+    if (planar && !material_emits_both_sides(r.material)) {
         cone.axis = primitive_sample_towards(r.primitive, vec3(0), vec2(0.5)).normal;
         cone.cos_normals = 1.0;
     }
