@@ -1,0 +1,81 @@
+// A small world on the device, asked through shaders/lib/traversal.glsl and lib/primitives.glsl, and by brute force.
+#pragma once
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+
+#include "host/scene/bvh.h"
+#include "host/scene/classes.h"
+#include "host/scene/records.h"
+#include "host/scene/world.h"
+#include "tests/support/device_fixture.h"
+
+namespace etendue {
+
+struct ProbeRay {
+    glm::vec3 origin;
+    float t_max;
+    glm::vec3 direction;
+    float unused = 0;
+};
+
+struct ProbeHit {
+    float t;
+    glm::vec2 uv;
+    uint32_t primitive, instance;
+};
+
+struct ProbeTrace {
+    ProbeHit hit;        // by the hierarchy
+    ProbeHit expected;   // by trying every primitive
+    uint32_t occluded;   // by find_occlusion
+    glm::vec3 position, error, geometric_normal, shading_normal;  // of `hit`
+    glm::vec3 onward;    // where a ray that goes straight on leaves the surface
+};
+
+class GeometryProbe {
+  public:
+    GeometryProbe();
+    void add_triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
+    // `parameters` of the class as a scene gives them, `local` its box.
+    void add_shape(const std::string& class_name, const nlohmann::json& parameters, const Box& local,
+                   const glm::dmat4& world_from_local);
+    uint32_t add_mesh(const std::vector<glm::vec3>& vertices);  // three a triangle, for instances
+    void add_instance(uint32_t mesh, const glm::dmat4& world_from_local);
+
+    // Builds the hierarchies and compiles what the world needs.
+    void build(NodeFormat format = NodeFormat::quantised);
+
+    // `brute_force` = false leaves `expected` undefined and takes a fraction of the time.
+    std::vector<ProbeTrace> trace(const std::vector<ProbeRay>& rays, bool brute_force = true);
+    // Rays that the kernel find_hits traces, as (t, u, v, primitive).
+    std::vector<glm::vec4> find_hits(const std::vector<ProbeRay>& rays, std::vector<uint32_t>* instances = nullptr);
+
+    // Of a kernel that includes lib/primitives.glsl; `buffers` are the kernel's own.
+    Kernel kernel(const std::string& name, const std::string& text, BufferTable buffers, const std::string& defines = "");
+
+    const std::vector<PrimitiveRecord>& primitives() const { return world_.primitives; }
+
+  private:
+    struct Mesh {
+        std::vector<PrimitiveRecord> triangles;
+        Box bounds;
+    };
+    void place(const glm::dmat4& world_from_local, PrimitiveKind kind, const Box& local);
+
+    ClassRegistry registry_;
+    RecordBuffer records_;
+    std::vector<std::pair<const ClassInfo*, uint32_t>> shapes_;  // class and index in it, by transform
+    std::vector<Mesh> meshes_;
+    std::vector<uint32_t> instance_meshes_;  // by transform
+    std::vector<PrimitiveRecord> placed_;
+    std::vector<Box> boxes_;
+    World world_;
+    ShaderSources sources_;
+    std::string defines_;
+    Buffer nodes_, primitives_, transforms_, geometry_;
+};
+
+// Sphere of 2^(2 n) * 20 triangles around the origin by subdividing an icosahedron.
+std::vector<glm::vec3> icosphere(int subdivisions, float radius);
+
+}  // namespace etendue
