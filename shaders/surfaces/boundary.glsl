@@ -1,0 +1,14 @@
+// Separates two media and nothing else: light passes straight on, whatever the media's refractive indices.
+struct Boundary {
+    uint unused;  // a record holds at least one member
+};
+
+Spectrum boundary_eval(Boundary r, SurfaceContext c, vec3 wo, vec3 wi) { return Spectrum(0); }
+float boundary_pdf(Boundary r, SurfaceContext c, vec3 wo, vec3 wi) { return 0.0; }
+
+BsdfSample boundary_sample(Boundary r, SurfaceContext c, vec3 wo, vec3 u) {
+    return BsdfSample(-wo, Spectrum(1), 1.0, EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT);
+}
+
+Spectrum boundary_transparency(Boundary r, SurfaceContext c, vec3 wo) { return Spectrum(1); }
+bool boundary_is_delta(Boundary r, SurfaceContext c) { return true; }

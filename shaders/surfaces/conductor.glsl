@@ -1,0 +1,84 @@
+// A metal: smooth (a mirror) or a GGX microfacet surface. Both sides reflect.
+//
+// `reflectance`, where given, is the reflected part at every angle; else Fresnel's equations hold for a metal
+// of complex index eta - i k in the medium on the ray's side. The defaults of eta and k make a perfect
+// mirror. One reflection at a facet is modelled, so rough surfaces lose what is reflected more often;
+// `multiscatter` gives it back as a diffuse lobe after Kulla & Conty 2017, reciprocal and lossless for
+// reflectance 1.
+#include "lib/fresnel.glsl"
+#include "lib/microfacet.glsl"
+#include "lib/microfacet_energy.glsl"
+
+struct Conductor {
+    SpectrumRef eta;          //: 0 in [0, inf). Real part of the refractive index.
+    SpectrumRef k;            //: 1 in [0, inf). Extinction coefficient.
+    SpectrumRef reflectance;  //: none in [0, 1]. Reflected at every angle, instead of by eta and k. none = -1.
+    float alpha;              //: 0 in [0, 1]. GGX width; below 1e-4 the surface is perfectly smooth.
+    bool multiscatter;        //: false. Keeps the light that is reflected more than once between facets.
+};
+
+Spectrum conductor_fresnel(Conductor r, SurfaceContext c, float side, float cos_o) {
+    Spectrum reflectance = spectrum_value(r.reflectance);
+    float inv_ior = 1.0 / (side < 0.0 ? c.ior_below : c.ior_above);
+    Spectrum f = fresnel_conductor(cos_o, spectrum_value(r.eta) * inv_ior, spectrum_value(r.k) * inv_ior);
+    return mix(f, reflectance, greaterThanEqual(reflectance, Spectrum(0)));
+}
+
+// What light reflected more than once between facets adds: a lobe f = tint (1 - E(wo)) (1 - E(wi)) / (pi (1 -
+// E_avg)) with tint = F_avg² E_avg / (1 - F_avg (1 - E_avg)) (Kulla & Conty 2017; Fdez-Agüera 2019 eq. 15).
+Spectrum conductor_multiscatter_tint(Conductor r, SurfaceContext c, float side) {
+    // F_avg = 2 ∫ F(mu) mu dmu by the three-point Gauss rule of weight mu on [0, 1].
+    Spectrum f_avg = 0.139653960 * conductor_fresnel(r, c, side, 0.212340538) +
+                     0.458482213 * conductor_fresnel(r, c, side, 0.590533136) +
+                     0.401863827 * conductor_fresnel(r, c, side, 0.911412040);
+    float loss = ggx_average_loss(r.alpha);
+    return f_avg * f_avg * (1.0 - loss) / (1.0 - f_avg * loss);
+}
+
+// Part of the samples that follow the multiple-scattering lobe.
+float conductor_multiscatter_part(Conductor r, float mu_o) {
+    return r.multiscatter ? clamp(ggx_loss(mu_o, r.alpha), 0.0, 0.9) : 0.0;
+}
+
+Spectrum conductor_eval(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    wo.z *= side, wi.z *= side;
+    if (wi.z <= 0.0 || r.alpha < SMOOTH_ALPHA) return Spectrum(0);
+    vec3 h = normalize(wo + wi);
+    Spectrum f = conductor_fresnel(r, c, side, dot(wo, h)) * ggx_reflection(wo, wi, h, r.alpha);
+    if (r.multiscatter)
+        f += conductor_multiscatter_tint(r, c, side) * (ggx_loss(wo.z, r.alpha) * ggx_loss(wi.z, r.alpha) *
+                                                        wi.z / (PI * ggx_average_loss(r.alpha)));
+    return f;
+}
+
+float conductor_pdf(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    wo.z *= side, wi.z *= side;
+    if (wi.z <= 0.0 || r.alpha < SMOOTH_ALPHA) return 0.0;
+    float multiscatter = conductor_multiscatter_part(r, wo.z);
+    return mix(ggx_reflection_pdf(wo, normalize(wo + wi), r.alpha), INV_PI * wi.z, multiscatter);
+}
+
+BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    wo.z *= side;
+    if (r.alpha < SMOOTH_ALPHA)
+        return BsdfSample(vec3(-wo.xy, wo.z * side), conductor_fresnel(r, c, side, wo.z), 1.0,
+                          EVENT_REFLECT | EVENT_DELTA);
+    vec3 h = ggx_sample_visible(wo, r.alpha, u.xy);
+    vec3 wi = 2.0 * dot(wo, h) * h - wo;
+    if (u.z < conductor_multiscatter_part(r, wo.z)) wi = warp_cosine_hemisphere(u.xy);
+    if (wi.z <= 0.0) return no_bsdf_sample();
+    if (!r.multiscatter) {
+        Spectrum weight = conductor_fresnel(r, c, side, dot(wo, h)) * ggx_g1(wi.z, r.alpha);
+        float pdf = ggx_reflection_pdf(wo, h, r.alpha);
+        return BsdfSample(vec3(wi.xy, wi.z * side), weight, pdf, EVENT_REFLECT);
+    }
+    wo.z *= side, wi.z *= side;
+    float pdf = conductor_pdf(r, c, wo, wi);
+    return BsdfSample(wi, conductor_eval(r, c, wo, wi) / pdf, pdf, EVENT_REFLECT);
+}
+
+Spectrum conductor_transparency(Conductor r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
+bool conductor_is_delta(Conductor r, SurfaceContext c) { return r.alpha < SMOOTH_ALPHA; }

@@ -1,0 +1,112 @@
+// A clear interface between two media: smooth (Fresnel's equations, Snell's law) or a GGX microfacet surface
+// that reflects and refracts (Walter et al. 2007), sampled by visible normals. The media say the refractive
+// indices.
+//
+// One event at a facet is modelled, so rough surfaces lose what meets a facet more often; `multiscatter`
+// gives it back as diffuse lobes on both sides after Kulla & Conty 2017, which are reciprocal and lossless.
+#include "lib/fresnel.glsl"
+#include "lib/microfacet.glsl"
+#include "lib/microfacet_energy.glsl"
+
+struct Dielectric {
+    float alpha;        //: 0 in [0, 1]. GGX width; below 1e-4 the surface is perfectly smooth.
+    bool multiscatter;  //: false. Keeps the light that meets more than one facet.
+};
+
+bool dielectric_is_delta(Dielectric r, SurfaceContext c) {
+    return interface_is_smooth(r.alpha, c.ior_above, c.ior_below);
+}
+
+float dielectric_eta(SurfaceContext c, float side) {
+    return side < 0.0 ? c.ior_above / c.ior_below : c.ior_below / c.ior_above;
+}
+
+// Radiance is carried from wi to wo, and radiance over squared index is what refraction keeps (Veach 1997
+// sec. 5.2).
+float dielectric_transmission_scale(SurfaceContext c, float eta) {
+    return c.importance ? 1.0 : 1.0 / (eta * eta);
+}
+
+float dielectric_multiscatter_part(Dielectric r, float mu_o, float eta) {
+    return r.multiscatter ? clamp(ggx_dielectric_loss(mu_o, r.alpha, eta), 0.0, 0.9) : 0.0;
+}
+
+Spectrum dielectric_eval(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
+    if (dielectric_is_delta(r, c)) return Spectrum(0);
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    wo.z *= side, wi.z *= side;
+    float eta = dielectric_eta(c, side);
+    bool reflects = wi.z > 0.0;
+    vec3 h = reflects ? normalize(wo + wi) : refraction_normal(wo, wi, eta);
+    float f = fresnel_dielectric(dot(wo, h), eta);
+    float value = reflects ? f * ggx_reflection(wo, wi, h, r.alpha)
+                           : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta) * ggx_g1(-wi.z, r.alpha);
+    if (r.multiscatter) value += ggx_dielectric_multiscatter(wo.z, wi.z, r.alpha, eta);
+    return Spectrum(reflects ? value : value * dielectric_transmission_scale(c, eta));
+}
+
+float dielectric_pdf(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
+    if (dielectric_is_delta(r, c)) return 0.0;
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    wo.z *= side, wi.z *= side;
+    float eta = dielectric_eta(c, side);
+    bool reflects = wi.z > 0.0;
+    vec3 h = reflects ? normalize(wo + wi) : refraction_normal(wo, wi, eta);
+    float f = fresnel_dielectric(dot(wo, h), eta);
+    float single = reflects ? f * ggx_reflection_pdf(wo, h, r.alpha)
+                            : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta);
+    if (!r.multiscatter) return single;
+    float transmitted = ggx_dielectric_multiscatter_transmission(r.alpha, eta);
+    float diffuse = INV_PI * abs(wi.z) * (reflects ? 1.0 - transmitted : transmitted);
+    return mix(single, diffuse, dielectric_multiscatter_part(r, wo.z, eta));
+}
+
+BsdfSample dielectric_sample_smooth(SurfaceContext c, vec3 wo, float side, float u) {
+    float eta = dielectric_eta(c, side);
+    float f = fresnel_dielectric(wo.z, eta);
+    if (u < f) return BsdfSample(vec3(-wo.xy, wo.z * side), Spectrum(1), f, EVENT_REFLECT | EVENT_DELTA);
+    vec3 wi;
+    refract_direction(wo, vec3(0, 0, 1), wo.z, eta, wi);
+    wi.z *= side;
+    uint event = EVENT_TRANSMIT | EVENT_DELTA;
+    if (eta == 1.0) wi = vec3(-wo.xy, -wo.z * side), event |= EVENT_STRAIGHT;
+    return BsdfSample(wi, Spectrum(dielectric_transmission_scale(c, eta)), 1.0 - f, event);
+}
+
+BsdfSample dielectric_sample(Dielectric r, SurfaceContext c, vec3 wo, vec3 u) {
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    wo.z *= side;
+    if (dielectric_is_delta(r, c)) return dielectric_sample_smooth(c, wo, side, u.z);
+    float eta = dielectric_eta(c, side);
+    float multiscatter = dielectric_multiscatter_part(r, wo.z, eta);
+    bool single = u.z >= multiscatter;
+    float choice = single ? (u.z - multiscatter) / (1.0 - multiscatter) : u.z / multiscatter;
+
+    vec3 h = ggx_sample_visible(wo, r.alpha, u.xy);
+    float cos_o = dot(wo, h);
+    float f = fresnel_dielectric(cos_o, eta);
+    bool reflects = choice < f;
+    vec3 wi = 2.0 * cos_o * h - wo;
+    if (!reflects) refract_direction(wo, h, cos_o, eta, wi);
+    if (!single) {
+        wi = warp_cosine_hemisphere(u.xy);
+        reflects = choice >= ggx_dielectric_multiscatter_transmission(r.alpha, eta);
+        if (!reflects) wi.z = -wi.z;
+    }
+    if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
+    uint event = reflects ? EVENT_REFLECT : EVENT_TRANSMIT;
+    if (!r.multiscatter) {
+        float pdf = reflects ? f * ggx_reflection_pdf(wo, h, r.alpha)
+                             : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta);
+        float weight = ggx_g1(abs(wi.z), r.alpha) * (reflects ? 1.0 : dielectric_transmission_scale(c, eta));
+        wi.z *= side;
+        return pdf > 0.0 ? BsdfSample(wi, Spectrum(weight), pdf, event) : no_bsdf_sample();
+    }
+    wo.z *= side, wi.z *= side;
+    float pdf = dielectric_pdf(r, c, wo, wi);
+    return pdf > 0.0 ? BsdfSample(wi, dielectric_eval(r, c, wo, wi) / pdf, pdf, event) : no_bsdf_sample();
+}
+
+Spectrum dielectric_transparency(Dielectric r, SurfaceContext c, vec3 wo) {
+    return Spectrum(c.ior_above == c.ior_below ? 1.0 : 0.0);
+}

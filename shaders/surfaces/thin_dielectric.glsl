@@ -1,0 +1,29 @@
+// A pane: two smooth parallel interfaces, all reflections between them summed. The pane itself has no
+// thickness, so what it lets through goes straight on: R' = R + T² R + T² R³ + … = 2 R / (1 + R),
+// T' = 1 - R'. Lossless.
+#include "lib/fresnel.glsl"
+
+struct ThinDielectric {
+    float ior;  //: 1.5 in (0, inf). Refractive index of the pane.
+};
+
+float thin_dielectric_reflectance(ThinDielectric r, SurfaceContext c, vec3 wo) {
+    float f = fresnel_dielectric(wo.z, r.ior / (wo.z < 0.0 ? c.ior_below : c.ior_above));
+    return 2.0 * f / (1.0 + f);
+}
+
+Spectrum thin_dielectric_eval(ThinDielectric r, SurfaceContext c, vec3 wo, vec3 wi) { return Spectrum(0); }
+float thin_dielectric_pdf(ThinDielectric r, SurfaceContext c, vec3 wo, vec3 wi) { return 0.0; }
+
+BsdfSample thin_dielectric_sample(ThinDielectric r, SurfaceContext c, vec3 wo, vec3 u) {
+    float f = thin_dielectric_reflectance(r, c, wo);
+    bool reflects = u.z < f;
+    return BsdfSample(reflects ? vec3(-wo.xy, wo.z) : -wo, Spectrum(1), reflects ? f : 1.0 - f,
+                      reflects ? EVENT_REFLECT | EVENT_DELTA : EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT);
+}
+
+Spectrum thin_dielectric_transparency(ThinDielectric r, SurfaceContext c, vec3 wo) {
+    return Spectrum(1.0 - thin_dielectric_reflectance(r, c, wo));
+}
+
+bool thin_dielectric_is_delta(ThinDielectric r, SurfaceContext c) { return true; }
