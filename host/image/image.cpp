@@ -30,6 +30,17 @@ void add_channels(Image& image, const std::vector<std::string>& names, std::span
     }
 }
 
+void remove_channels(Image& image, std::string_view prefix) {
+    Image kept{image.width, image.height, {}, {}, std::move(image.attributes)};
+    for (size_t c = 0; c < image.channels.size(); ++c) {
+        if (image.channels[c].starts_with(prefix)) continue;
+        const auto values = plane(image, c);
+        kept.channels.push_back(image.channels[c]);
+        kept.values.insert(kept.values.end(), values.begin(), values.end());
+    }
+    image = std::move(kept);
+}
+
 std::array<size_t, 3> picture_channels(const Image& image) {
     int r = find_channel(image, "R"), g = find_channel(image, "G"), b = find_channel(image, "B");
     if (r >= 0 && g >= 0 && b >= 0) return {size_t(r), size_t(g), size_t(b)};

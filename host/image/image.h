@@ -36,6 +36,9 @@ std::span<const float> plane(const Image& image, size_t channel);
 void add_channels(Image& image, const std::vector<std::string>& names, std::span<const float> pixels,
                   size_t stride);
 
+// Drops the channels whose name begins with `prefix`, such as a layer's "error.".
+void remove_channels(Image& image, std::string_view prefix);
+
 // The channels that show the picture: R, G, B where there are all three, else Y or the first channel three
 // times.
 std::array<size_t, 3> picture_channels(const Image& image);

@@ -26,6 +26,8 @@ std::string Features::defines() const {
     define("HAS_INTERFACES", interfaces);
     define("HAS_STRAIGHT", straight);
     define("HAS_LIGHT_TREE", light_tree);
+    define("TEXTURE_FORMATS", texture_formats);
+    define("BVH_STACK_SIZE", bvh_stack_size);
     define("LIGHT_COUNT", light_count);
     define("INFINITE_LIGHT_COUNT", infinite_light_count);
     return text;

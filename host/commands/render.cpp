@@ -1,0 +1,194 @@
+// etendue render: a scene to an image, until a number of passes, a time or an error is reached.
+#include <chrono>
+#include <fstream>
+#include <glm/glm.hpp>
+
+#include "host/commands.h"
+#include "host/error.h"
+#include "host/image/atomic_file.h"
+#include "host/image/checkpoint.h"
+#include "host/image/exr.h"
+#include "host/image/image.h"
+#include "host/interrupt.h"
+#include "host/progress.h"
+#include "host/render/renderer.h"
+#include "host/scene/gltf.h"
+
+namespace etendue {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr double batch_seconds = 0.25;        // of work between two looks at clock, interrupt and progress
+constexpr double checkpoint_seconds = 30;     // between two checkpoints
+constexpr uint32_t aov_samples = 16;          // primary rays a pixel for --aovs
+
+const Receiver& choose_receiver(const Scene& scene, const RenderOptions& options) {
+    if (scene.receivers.empty()) fail_input("{}: the scene has no camera and no receiver", options.scene.string());
+    if (options.receiver.empty()) return scene.receivers.front();
+    std::string names;
+    for (const Receiver& receiver : scene.receivers) {
+        if (receiver.name == options.receiver) return receiver;
+        names += (names.empty() ? "" : ", ") + receiver.name;
+    }
+    fail_input("--receiver {}: no such receiver in {}; there are: {}", options.receiver, options.scene.string(), names);
+}
+
+ImageSize image_size(const Receiver& receiver, const RenderOptions& options) {
+    if (options.size) return *options.size;
+    const float aspect = receiver.aspect_ratio > 0 ? receiver.aspect_ratio : 1.0f;
+    return {std::max(1u, uint32_t(std::lround(512 * aspect))), 512};
+}
+
+// What a checkpoint must agree on to be gone on from.
+nlohmann::json checkpoint_identity(const RenderOptions& options, const ImageSize& size, const Receiver& receiver,
+                                   const Device& device) {
+    const auto hash_file = [](const std::filesystem::path& file) {
+        return file.empty() ? std::string() : fmt::format("{:016x}", hash_bytes(read_whole_file(file)));
+    };
+    return {{"version", ETENDUE_VERSION}, {"scene", hash_file(options.scene)}, {"environment", hash_file(options.environment)},
+            {"size", fmt::format("{}x{}", size.width, size.height)}, {"receiver", receiver.name},
+            {"seed", options.seed}, {"device", device.description.name + " " + device.description.driver}};
+}
+
+nlohmann::json stats(const RenderOptions& options, const Device& device, const Scene& scene, const Renderer& renderer,
+                     double error, double setup_seconds) {
+    nlohmann::json kernels = nlohmann::json::array(), timings = nlohmann::json::object();
+    double compile_seconds = 0;
+    for (const KernelReport& k : scene.kernels) {
+        kernels.push_back({{"name", k.name}, {"from_cache", k.from_cache}, {"seconds", k.seconds}, {"spirv_bytes", k.spirv_bytes}});
+        compile_seconds += k.seconds;
+    }
+    const RenderCounters& c = renderer.counters();
+    for (const auto& [name, t] : renderer.timings())
+        timings[name] = {{"seconds", t.seconds}, {"dispatches", t.dispatches},
+                         {"rays_per_second", t.seconds > 0 ? double(c.rays + c.shadow_rays) / t.seconds : 0.0}};
+    // Every backward path starts with importance 1; what is neither escaped nor lost was absorbed.
+    const double paths = double(renderer.passes()) * options.size->width * options.size->height;
+    nlohmann::json balance = {{"unit", "share of the importance that left the receiver"},
+                              {"emitted", 1.0},
+                              {"escaped", c.escaped / paths},
+                              {"absorbed", 1.0 - (c.escaped + c.depth_limit_lost) / paths},
+                              {"lost", {{"depth_limit", c.depth_limit_lost / paths},
+                                        {"non_finite", double(c.non_finite) / paths}}}};
+    return {{"scene", options.scene.string()}, {"command", options.command_line}, {"version", ETENDUE_VERSION},
+            {"device", device.description.name}, {"driver", device.description.driver}, {"seed", options.seed},
+            {"width", options.size->width}, {"height", options.size->height},
+            {"passes", renderer.passes()}, {"backward_rays", c.rays}, {"shadow_rays", c.shadow_rays}, {"forward_rays", 0},
+            {"seconds", renderer.seconds()}, {"setup_seconds", setup_seconds},
+            {"rays_per_second", renderer.seconds() > 0 ? double(c.rays + c.shadow_rays) / renderer.seconds() : 0.0},
+            {"estimated_relative_error", std::isfinite(error) ? nlohmann::json(error) : nlohmann::json()},
+            {"algorithm", "backward"}, {"schedule", schedule_name(renderer.schedule())},
+            {"kernels", timings}, {"compiled_kernels", kernels}, {"compile_seconds", compile_seconds},
+            {"peak_device_memory_bytes", device.peak_bytes_allocated},
+            {"light_power_lm", scene.power}, {"importance_balance", balance}, {"non_finite_samples", c.non_finite}};
+}
+
+void write_stats(const std::filesystem::path& path, const nlohmann::json& json) {
+    const std::string text = json.dump(2) + "\n";
+    write_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void save_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity, const Renderer& renderer) {
+    FilmState film = renderer.state();
+    Checkpoint checkpoint;
+    checkpoint.identity = identity;
+    checkpoint.passes = film.passes;
+    checkpoint.counters = to_json(film.counters);
+    checkpoint.arrays.push_back({"film", std::move(film.pixels)});
+    write_checkpoint(path, checkpoint);
+}
+
+void load_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity, Renderer& renderer) {
+    const Checkpoint checkpoint = read_checkpoint(path, identity);
+    FilmState film = renderer.state();
+    film.pixels = checkpoint_array(checkpoint, path, "film", film.pixels.size());
+    film.passes = checkpoint.passes;
+    film.counters = counters_from_json(checkpoint.counters);
+    renderer.restore(film);
+}
+
+}  // namespace
+
+int render_command(const RenderOptions& given) {
+    RenderOptions options = given;
+    for (const auto& path : {options.output, options.stats, options.checkpoint})
+        if (!path.empty()) check_writable(path);
+    catch_interrupts();
+    Progress progress;
+    progress.style = progress_style(options.quiet);
+
+    const auto start = Clock::now();
+    const SceneDescription description = import_gltf(options.scene);
+    auto device = create_device({options.device, false});
+    SceneOptions scene_options;
+    scene_options.shaders = options.shaders;
+    scene_options.environment = options.environment;
+    scene_options.cache_folder = default_cache_folder();
+    Scene scene = compile_scene(*device, description, scene_options);
+    for (const std::string& warning : scene.warnings) show_note(progress, "warning: " + warning);
+    const Receiver& receiver = choose_receiver(scene, options);
+    if (scene.lights == 0) show_note(progress, fmt::format("warning: {}: the scene has no light: the image is black", options.scene.string()));
+    options.size = image_size(receiver, options);
+
+    RenderSettings settings;
+    settings.width = options.size->width, settings.height = options.size->height;
+    settings.receiver = receiver.ref;
+    settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
+    Renderer renderer(*device, scene, settings);
+    const nlohmann::json identity = checkpoint_identity(options, *options.size, receiver, *device);
+    if (!options.resume.empty()) load_checkpoint(options.resume, identity, renderer);
+    const double setup_seconds = seconds_since(start);
+
+    RenderStatus status;
+    status.passes_goal = options.passes, status.seconds_goal = options.seconds, status.error_goal = options.error;
+    const auto render_start = Clock::now();
+    double next_checkpoint = checkpoint_seconds, next_estimate = 0;
+    bool done = options.passes && renderer.passes() >= *options.passes;
+    while (!done && !interrupted()) {
+        double batch = batch_seconds;
+        if (options.seconds) batch = std::min(batch, *options.seconds - status.seconds);
+        uint32_t count = renderer.passes_in(batch);
+        if (options.passes) count = uint32_t(std::min<uint64_t>(count, *options.passes - renderer.passes()));
+        renderer.render_passes(count);
+        status.passes = renderer.passes();
+        status.seconds = seconds_since(render_start);
+        status.rays = double(renderer.counters().rays + renderer.counters().shadow_rays);
+        // Developing the film costs time: as often as it takes a tenth of the work at most.
+        if (options.error && status.seconds >= next_estimate) {
+            const auto begin = Clock::now();
+            status.error = estimated_relative_error(renderer.develop());
+            next_estimate = status.seconds + std::max(0.1, 10 * seconds_since(begin));
+        }
+        done = (options.passes && renderer.passes() >= *options.passes) ||
+               (options.seconds && status.seconds >= *options.seconds) ||
+               (options.error && renderer.passes() >= 16 && status.error && *status.error <= *options.error);
+        if (!options.checkpoint.empty() && status.seconds >= next_checkpoint) {
+            save_checkpoint(options.checkpoint, identity, renderer);
+            next_checkpoint = seconds_since(render_start) + checkpoint_seconds;
+        }
+        show_progress(progress, status);
+    }
+    finish_progress(progress, status);
+    if (!options.checkpoint.empty()) save_checkpoint(options.checkpoint, identity, renderer);
+
+    Image image = renderer.develop();
+    const double error = estimated_relative_error(image);
+    if (options.aovs) renderer.add_aovs(image, aov_samples);
+    image.attributes = {{"scene", options.scene.string()}, {"command", options.command_line},
+                        {"seed", double(options.seed)}, {"passes", double(renderer.passes())},
+                        {"rays", double(renderer.counters().rays + renderer.counters().shadow_rays)},
+                        {"seconds", renderer.seconds()}, {"device", device->description.name},
+                        {"driver", device->description.driver}, {"version", std::string(ETENDUE_VERSION)}};
+    if (!options.aovs) remove_channels(image, "error.");
+    write_exr(options.output, image);
+    if (!options.stats.empty()) write_stats(options.stats, stats(options, *device, scene, renderer, error, setup_seconds));
+    if (renderer.counters().non_finite)
+        show_note(progress, fmt::format("warning: {} samples were not finite and count as black", renderer.counters().non_finite));
+    if (renderer.counters().depth_limit)
+        show_note(progress, fmt::format("warning: {} paths were cut at the depth limit", renderer.counters().depth_limit));
+    return int(interrupted() && !done ? ExitCode::interrupted : ExitCode::done);
+}
+
+}  // namespace etendue

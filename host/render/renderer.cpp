@@ -1,0 +1,155 @@
+#include "host/render/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "host/error.h"
+#include "host/render/pipelines.h"
+
+namespace etendue {
+namespace {
+
+// Twin of struct FilmPixel in shaders/lib/film.glsl.
+struct FilmPixel {
+    glm::vec3 sum;
+    float samples;
+    glm::vec3 compensation;
+    float reserved;
+    glm::vec3 squares;
+    float reserved_squares;
+};
+
+// Twin of CounterSums in shaders/lib/counters.glsl.
+struct CounterSums {
+    uint32_t counts[4];
+    uint32_t importance[4];  // whole and 1/65536, in pairs
+};
+
+}  // namespace
+
+const char* schedule_name(Schedule schedule) {
+    return schedule == Schedule::fused ? "fused" : schedule == Schedule::wavefront ? "wavefront" : "automatic";
+}
+
+nlohmann::json to_json(const RenderCounters& c) {
+    return {{"rays", c.rays}, {"shadow_rays", c.shadow_rays}, {"non_finite", c.non_finite},
+            {"depth_limit", c.depth_limit}, {"escaped", c.escaped}, {"depth_limit_lost", c.depth_limit_lost}};
+}
+
+RenderCounters counters_from_json(const nlohmann::json& j) {
+    return {j.value("rays", uint64_t(0)), j.value("shadow_rays", uint64_t(0)), j.value("non_finite", uint64_t(0)),
+            j.value("depth_limit", uint64_t(0)), j.value("escaped", 0.0), j.value("depth_limit_lost", 0.0)};
+}
+
+Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
+    : device_(device), scene_(scene), settings_(settings), schedule_(settings.schedule),
+      film_(device, uint64_t(settings.width) * settings.height * sizeof(FilmPixel), "Film"),
+      counter_sums_(device, sizeof(CounterSums), "CounterSums"), commands_(device) {
+    film_.fill(0);
+    counter_sums_.fill(0);
+    schedule_ = Schedule::fused;
+    pipeline_ = std::make_unique<FusedPipeline>(device, scene, settings_, film_, counter_sums_);
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::render_passes(uint32_t count) {
+    const auto start = std::chrono::steady_clock::now();
+    pipeline_->run(commands_, passes_, count, timings_);
+    passes_ += count;
+    read_counters();
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_ += seconds;
+    last_pass_seconds_ = seconds / count;
+}
+
+uint32_t Renderer::passes_in(double seconds) const {
+    if (last_pass_seconds_ <= 0) return 1;
+    return uint32_t(std::clamp(seconds / last_pass_seconds_, 1.0, 4096.0));
+}
+
+void Renderer::read_counters() {
+    const CounterSums sums = counter_sums_.read_array<CounterSums>(1)[0];
+    counter_sums_.fill(0);
+    counters_.rays += sums.counts[0];
+    counters_.shadow_rays += sums.counts[1];
+    counters_.non_finite += sums.counts[2];
+    counters_.depth_limit += sums.counts[3];
+    counters_.escaped += sums.importance[0] + sums.importance[1] / 65536.0;
+    counters_.depth_limit_lost += sums.importance[2] + sums.importance[3] / 65536.0;
+}
+
+Image Renderer::develop() const {
+    Image image;
+    image.width = settings_.width, image.height = settings_.height;
+    const auto pixels = film_.read_array<FilmPixel>(pixel_count(image));
+    std::vector<glm::vec3> means(pixels.size()), errors(pixels.size());
+    for (size_t i = 0; i < pixels.size(); ++i) {
+        const FilmPixel& p = pixels[i];
+        const double n = p.samples;
+        if (n == 0) continue;
+        for (int c = 0; c < 3; ++c) {
+            const double mean = (double(p.sum[c]) + double(p.compensation[c])) / n;
+            means[i][c] = float(mean);
+            const double variance = std::max(0.0, double(p.squares[c]) / n - mean * mean);
+            errors[i][c] = n > 1 ? float(std::sqrt(variance / (n - 1))) : INFINITY;
+        }
+    }
+    const auto floats = [](const std::vector<glm::vec3>& v) { return std::span<const float>(&v[0].x, 3 * v.size()); };
+    add_channels(image, {"R", "G", "B"}, floats(means), 3);
+    add_channels(image, {"error.R", "error.G", "error.B"}, floats(errors), 3);
+    return image;
+}
+
+void Renderer::add_aovs(Image& image, uint32_t count) {
+    struct Aov {
+        glm::vec3 albedo, normal;
+        float depth;
+    };
+    const size_t pixels = pixel_count(image);
+    const Buffer buffer(device_, pixels * sizeof(Aov), "Aovs");
+    const Kernel kernel = make_kernel(device_, scene_, "kernels/trace_aovs.comp", {{"Aovs", &buffer}});
+    commands_.dispatch(kernel, uint32_t((pixels + kernel.group_size() - 1) / kernel.group_size()),
+                       {{"receiver", settings_.receiver}, {"width", settings_.width}, {"height", settings_.height},
+                        {"sample_count", count}, {"seed", settings_.seed}});
+    commands_.run(&timings_);
+    const auto aovs = buffer.read_array<Aov>(pixels);
+    add_channels(image, {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"},
+                 std::span(&aovs[0].albedo.x, 7 * pixels), 7);
+}
+
+FilmState Renderer::state() const {
+    FilmState state;
+    state.pixels.resize(uint64_t(settings_.width) * settings_.height * sizeof(FilmPixel));
+    film_.read(state.pixels.data(), state.pixels.size());
+    state.passes = passes_;
+    state.counters = counters_;
+    return state;
+}
+
+void Renderer::restore(const FilmState& state) {
+    film_.write(state.pixels.data(), state.pixels.size());
+    passes_ = state.passes;
+    counters_ = state.counters;
+}
+
+double estimated_relative_error(const Image& image) {
+    double sum = 0;
+    for (const char* channel : {"R", "G", "B"}) {
+        const int value = find_channel(image, channel), error = find_channel(image, std::string("error.") + channel);
+        if (value < 0 || error < 0) return INFINITY;
+        const auto values = plane(image, size_t(value)), errors = plane(image, size_t(error));
+        double mean = 0;
+        for (float v : values) mean += v;
+        mean /= double(values.size());
+        const double floor = std::max(0.01 * mean * mean, 1e-300);
+        for (size_t i = 0; i < values.size(); ++i) {
+            if (std::isinf(errors[i])) return INFINITY;
+            sum += double(errors[i]) * errors[i] / (double(values[i]) * values[i] + floor) / (3.0 * double(values.size()));
+        }
+    }
+    return std::sqrt(sum);
+}
+
+}  // namespace etendue

@@ -1,0 +1,94 @@
+// Passes over a scene: the schedule of kernels that fills the film of one receiver.
+//
+// A pass is one backward path a pixel. Each pixel's samples are added in order of their index whatever the size of a
+// batch, so the film after n passes is the same bits for the same seed and device.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "host/gpu/kernel.h"
+#include "host/image/image.h"
+#include "host/scene/scene.h"
+
+namespace etendue {
+
+enum class Schedule {
+    automatic,  // fused where the scene has few classes and a small hierarchy, else wavefront
+    fused,      // whole paths in one kernel
+    wavefront,  // a kernel a stage, paths in memory between them
+};
+
+struct RenderSettings {
+    uint32_t width = 512, height = 512;
+    uint32_t receiver = no_record;  // RecordRef
+    uint32_t seed = 0;
+    Schedule schedule = Schedule::automatic;
+};
+
+// Sums over all passes. Importance: every path starts with 1.
+struct RenderCounters {
+    uint64_t rays = 0, shadow_rays = 0, non_finite = 0, depth_limit = 0;
+    double escaped = 0, depth_limit_lost = 0;
+};
+nlohmann::json to_json(const RenderCounters& counters);
+RenderCounters counters_from_json(const nlohmann::json& json);
+
+// What accumulates over passes; the bytes are those of struct FilmPixel in shaders/lib/film.glsl.
+struct FilmState {
+    std::vector<std::byte> pixels;
+    uint64_t passes = 0;
+    RenderCounters counters;
+};
+
+const char* schedule_name(Schedule schedule);
+
+class Renderer {
+  public:
+    Renderer(Device& device, Scene& scene, const RenderSettings& settings);
+    ~Renderer();
+    Renderer(const Renderer&) = delete;
+
+    void render_passes(uint32_t count);
+    // How many passes take about `seconds` by the speed of the last batch; 1 before the first.
+    uint32_t passes_in(double seconds) const;
+
+    uint64_t passes() const { return passes_; }
+    const RenderCounters& counters() const { return counters_; }
+    const KernelTimings& timings() const { return timings_; }
+    double seconds() const { return seconds_; }  // in render_passes
+    Schedule schedule() const { return schedule_; }
+
+    // Mean radiance as R, G, B, and its standard error as error.R, error.G, error.B.
+    Image develop() const;
+    // Adds albedo.RGB, normal.XYZ and depth.Z of what the pixels see, by `count` primary rays a pixel.
+    void add_aovs(Image& image, uint32_t count);
+
+    FilmState state() const;
+    void restore(const FilmState& state);  // of a film of the same size
+
+  private:
+    struct Pipeline;
+    struct FusedPipeline;
+    struct WavefrontPipeline;
+    void read_counters();
+    Device& device_;
+    Scene& scene_;
+    RenderSettings settings_;
+    Schedule schedule_;
+    Buffer film_, counter_sums_;
+    std::unique_ptr<Pipeline> pipeline_;
+    CommandList commands_;
+    KernelTimings timings_;
+    RenderCounters counters_;
+    uint64_t passes_ = 0;
+    double seconds_ = 0, last_pass_seconds_ = 0;
+};
+
+// Root of the estimated relMSE: sqrt(mean(error² / (I² + 0.01 mean(I)²))) over pixels and channels of an image with an
+// error layer. Infinite before the second pass.
+double estimated_relative_error(const Image& image);
+
+}  // namespace etendue

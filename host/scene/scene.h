@@ -1,0 +1,66 @@
+// A scene ready to render: records, hierarchies and textures in device buffers, and the headers that make kernels hold
+// only the classes and features the scene uses.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "host/gpu/kernel.h"
+#include "host/scene/classes.h"
+#include "host/scene/description.h"
+#include "host/scene/features.h"
+#include "host/scene/records.h"
+#include "host/scene/world.h"
+
+namespace etendue {
+
+struct Receiver {
+    std::string name;
+    uint32_t ref = no_record;
+    float aspect_ratio = 0;  // of its image; 0 = the scene does not say
+};
+
+// What was compiled of a kernel, for --stats and inspect.
+struct KernelReport {
+    std::string name;
+    bool from_cache = false;
+    double seconds = 0;
+    size_t spirv_bytes = 0;
+};
+
+struct Scene {
+    Features features;
+    ShaderSources sources;                                // with the generated headers
+    std::map<Interface, std::vector<const ClassInfo*>> classes;  // in use
+    std::unique_ptr<ClassRegistry> registry;
+    std::map<std::string, Buffer> buffers;
+    std::vector<Receiver> receivers;
+    std::vector<std::string> warnings;
+    uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;
+    glm::dvec3 center{0};     // of the device's world coordinates
+    float radius = 0;         // m, of a sphere around everything
+    double power = 0;         // of all lights, lm
+    double bvh_seconds = 0, bvh_cost = 0;
+    uint32_t bvh_depth = 0;
+    std::filesystem::path cache_folder;
+    std::vector<KernelReport> kernels;
+};
+
+struct SceneOptions {
+    std::filesystem::path shaders;      // folder of shaders instead of the embedded ones
+    std::filesystem::path environment;  // image that takes the place of the scene's environment
+    std::filesystem::path cache_folder; // of compiled kernels; empty = none
+    unsigned threads = 0;               // for building; 0 = all
+};
+
+// Errors: fail_input for what is wrong in the scene, fail_device for what the device cannot hold.
+Scene compile_scene(Device& device, const SceneDescription& description, const SceneOptions& options);
+
+// Compiles a kernel for the scene; `buffers` adds to the scene's own, `defines` to the features'.
+Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
+                   const std::string& defines = "");
+
+}  // namespace etendue
