@@ -210,7 +210,8 @@ void ClassRegistry::reflect(ClassInfo& info) const {
     }
 }
 
-std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes) {
+std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
+                         const std::map<std::string, std::string>& constants) {
     std::string text = fmt::format("#define {}(X)", interface.table);
     for (const ClassInfo* info : classes) text += fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
     text += '\n';
@@ -221,6 +222,9 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         // All classes of an interface are views of one buffer, on one binding.
         text += fmt::format("layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {} {}_records[]; }};\n",
                             int(interface.interface), interface.buffer, info->name, info->record, info->name);
+        const auto known = constants.find(info->name);
+        text += fmt::format("{0} {1}_record(uint index) {{ {0} r = {1}_records[index]; {2}return r; }}\n", info->record,
+                            info->name, known == constants.end() ? "" : known->second);
     }
     return text;
 }

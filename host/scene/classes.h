@@ -79,7 +79,10 @@ class ClassRegistry {
     std::map<Interface, std::vector<ClassInfo>> classes_;
 };
 
-// Text of "generated/NAME_classes.glsl" for the given classes: the dispatch table, the class files, their buffers.
-std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes);
+// Text of "generated/NAME_classes.glsl" for the given classes: the dispatch table, the class files, their buffers, and for
+// each class a function NAME_record(index). `constants` gives, by class, GLSL statements that set members of a record `r`
+// to what they are in every record of the scene, so that the compiler drops what they switch off.
+std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
+                         const std::map<std::string, std::string>& constants = {});
 
 }  // namespace etendue

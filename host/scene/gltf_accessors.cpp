@@ -65,7 +65,7 @@ void load_sparse(const GltfImport& import, const JsonAt& at, size_t size, Access
         uint32_t index = 0;
         std::memcpy(&index, sparse.indices + i * index_size, index_size);
         if (index >= accessor.count)
-            fail_at(indices, "index {} at position {}; the accessor has {} elements", index, i, accessor.count);
+            fail_at(indices, "has index {} at position {}; the accessor has {} elements", index, i, accessor.count);
     }
 }
 

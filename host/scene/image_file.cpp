@@ -13,6 +13,7 @@
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
+#include <algorithm>
 #include <climits>
 #include <cmath>
 #include <memory>
@@ -26,6 +27,37 @@ namespace {
 
 // 16384 x 16384: a header that asks for more is taken for damaged.
 const uint64_t max_texels = uint64_t(1) << 28;
+
+// stb_image reads zeros past the end of its input, and a truncated image comes out whole but black in part. Here the
+// source notes that more was asked for than there is.
+struct Source {
+    std::span<const uint8_t> bytes;
+    size_t at = 0;
+    bool ran_out = false;
+};
+
+int read_source(void* user, char* data, int size) {
+    auto& source = *static_cast<Source*>(user);
+    size_t count = std::min(size_t(size), source.bytes.size() - source.at);
+    std::copy_n(source.bytes.data() + source.at, count, data);
+    source.at += count;
+    source.ran_out = source.ran_out || count == 0;
+    return int(count);
+}
+
+void skip_source(void* user, int size) {
+    auto& source = *static_cast<Source*>(user);
+    int64_t at = int64_t(source.at) + size;
+    source.ran_out = source.ran_out || at > int64_t(source.bytes.size());
+    source.at = size_t(std::clamp<int64_t>(at, 0, int64_t(source.bytes.size())));
+}
+
+int source_ended(void* user) {
+    auto& source = *static_cast<Source*>(user);
+    return source.at >= source.bytes.size();
+}
+
+const stbi_io_callbacks source_callbacks = {read_source, skip_source, source_ended};
 
 struct StbiFree {
     void operator()(void* pixels) const { stbi_image_free(pixels); }
@@ -76,17 +108,19 @@ ImageDescription decode_image(std::span<const uint8_t> bytes, const std::string&
         check_size(uint64_t(width), uint64_t(height), where);
         image.width = uint32_t(width), image.height = uint32_t(height);
         size_t count = 4 * size_t(width) * size_t(height);
+        Source source{bytes};
         if (stbi_is_hdr_from_memory(bytes.data(), size)) {
             std::unique_ptr<float, StbiFree> pixels(
-                stbi_loadf_from_memory(bytes.data(), size, &width, &height, &channels, 4));
+                stbi_loadf_from_callbacks(&source_callbacks, &source, &width, &height, &channels, 4));
             if (pixels) image.rgba32f.assign(pixels.get(), pixels.get() + count);
         } else {
             std::unique_ptr<uint8_t, StbiFree> pixels(
-                stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, 4));
+                stbi_load_from_callbacks(&source_callbacks, &source, &width, &height, &channels, 4));
             if (pixels) image.rgba8.assign(pixels.get(), pixels.get() + count);
         }
+        if (source.ran_out) fail_input("{}: the image is truncated", where);
         if (image.rgba8.empty() && image.rgba32f.empty())
-            fail_input("{}: the image is damaged or truncated ({})", where, stbi_failure_reason());
+            fail_input("{}: the image is damaged: {}", where, stbi_failure_reason());
     }
     check_finite(image, where);
     return image;

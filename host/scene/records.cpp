@@ -162,6 +162,29 @@ void RecordBuffer::layout() {
     }
 }
 
+std::string RecordBuffer::constant_members(const ClassInfo& info) const {
+    const auto region = regions_.find(info.name);
+    if (region == regions_.end() || region->second.records.empty()) return "";
+    const std::vector<std::byte>& records = region->second.records;
+    std::string text;
+    for (const Parameter& p : info.parameters) {
+        const std::string& type = p.member.type;
+        if (!p.from_scene || p.member.size != 4) continue;
+        bool equal = true;
+        for (size_t at = info.stride; at < records.size(); at += info.stride)
+            equal = equal && !std::memcmp(&records[at + p.member.offset], &records[p.member.offset], 4);
+        if (!equal) continue;
+        uint32_t bits;
+        std::memcpy(&bits, &records[p.member.offset], 4);
+        if (type == "TextureRef" && bits == no_record) text += fmt::format("r.{}.index = NO_RECORD; ", p.member.name);
+        else if (p.default_value.is_boolean()) text += fmt::format("r.{} = {}; ", p.member.name, bits ? "true" : "false");
+        else if (type == "uint" || type == "int") text += fmt::format("r.{} = {}({}u); ", p.member.name, type, bits);
+        else if (type == "float" && (bits == 0 || bits == 0x3F800000u))
+            text += fmt::format("r.{} = {}; ", p.member.name, bits ? "1.0" : "0.0");
+    }
+    return text;
+}
+
 uint32_t RecordBuffer::ref(const ClassInfo& info, uint32_t nth) const {
     return record_ref(info.tag, regions_.at(info.name).first + nth);
 }

@@ -288,9 +288,13 @@ class SceneCompiler {
     }
 
     void write_headers() {
-        for (const InterfaceInfo& interface : all_interfaces())
+        for (const InterfaceInfo& interface : all_interfaces()) {
+            const auto& classes = out_.classes[interface.interface];
+            std::map<std::string, std::string> constants;
+            for (const ClassInfo* info : classes) constants[info->name] = records_[interface.interface].constant_members(*info);
             out_.sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] =
-                class_header(interface, out_.classes[interface.interface]);
+                class_header(interface, classes, constants);
+        }
         for (const auto& [name, text] : out_.registry->sources().generated) out_.sources.generated[name] = text;
     }
 

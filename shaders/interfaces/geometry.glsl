@@ -41,7 +41,7 @@ bool geometry_intersect(uint ref, vec3 origin, vec3 direction, float t_max, out 
     bool result = false;
     hit = GeometryHit(INFINITY, vec2(0));
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_intersect(name##_records[record_index(ref)], origin, direction, t_max, hit); break;
+#define CASE(tag, Struct, name) case tag: result = name##_intersect(name##_record(record_index(ref)), origin, direction, t_max, hit); break;
         GEOMETRY_CLASSES(CASE)
 #undef CASE
     }
@@ -51,7 +51,7 @@ bool geometry_intersect(uint ref, vec3 origin, vec3 direction, float t_max, out 
 LocalPoint geometry_locate(uint ref, vec3 origin, vec3 direction, GeometryHit hit) {
     LocalPoint result = LocalPoint(vec3(0), vec3(0), vec3(0, 0, 1), vec3(1, 0, 0), vec2(0));
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_locate(name##_records[record_index(ref)], origin, direction, hit); break;
+#define CASE(tag, Struct, name) case tag: result = name##_locate(name##_record(record_index(ref)), origin, direction, hit); break;
         GEOMETRY_CLASSES(CASE)
 #undef CASE
     }
@@ -61,7 +61,7 @@ LocalPoint geometry_locate(uint ref, vec3 origin, vec3 direction, GeometryHit hi
 GeometrySample geometry_sample(uint ref, vec2 u) {
     GeometrySample result = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_sample(name##_records[record_index(ref)], u); break;
+#define CASE(tag, Struct, name) case tag: result = name##_sample(name##_record(record_index(ref)), u); break;
         GEOMETRY_CLASSES(CASE)
 #undef CASE
     }
@@ -71,7 +71,7 @@ GeometrySample geometry_sample(uint ref, vec2 u) {
 GeometrySample geometry_sample_towards(uint ref, vec3 reference, vec2 u) {
     GeometrySample result = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_sample_towards(name##_records[record_index(ref)], reference, u); break;
+#define CASE(tag, Struct, name) case tag: result = name##_sample_towards(name##_record(record_index(ref)), reference, u); break;
         GEOMETRY_CLASSES(CASE)
 #undef CASE
     }
@@ -81,7 +81,7 @@ GeometrySample geometry_sample_towards(uint ref, vec3 reference, vec2 u) {
 float geometry_pdf_towards(uint ref, vec3 reference, vec3 position, vec3 normal) {
     float result = 0.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_pdf_towards(name##_records[record_index(ref)], reference, position, normal); break;
+#define CASE(tag, Struct, name) case tag: result = name##_pdf_towards(name##_record(record_index(ref)), reference, position, normal); break;
         GEOMETRY_CLASSES(CASE)
 #undef CASE
     }
@@ -91,7 +91,7 @@ float geometry_pdf_towards(uint ref, vec3 reference, vec3 position, vec3 normal)
 float geometry_area(uint ref) {
     float result = 0.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_area(name##_records[record_index(ref)]); break;
+#define CASE(tag, Struct, name) case tag: result = name##_area(name##_record(record_index(ref))); break;
         GEOMETRY_CLASSES(CASE)
 #undef CASE
     }
@@ -101,7 +101,7 @@ float geometry_area(uint ref) {
 void geometry_bounds(uint ref, out vec3 lo, out vec3 hi) {
     lo = vec3(0), hi = vec3(0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: name##_bounds(name##_records[record_index(ref)], lo, hi); break;
+#define CASE(tag, Struct, name) case tag: name##_bounds(name##_record(record_index(ref)), lo, hi); break;
         GEOMETRY_CLASSES(CASE)
 #undef CASE
     }

@@ -51,7 +51,7 @@ LightCone whole_sphere_cone() { return LightCone(vec3(0, 0, 1), -1.0, 0.0); }
 LightSample light_sample_towards(uint ref, vec3 point, vec2 u) {
     LightSample result = no_light_sample();
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_sample_towards(name##_records[record_index(ref)], point, u); break;
+#define CASE(tag, Struct, name) case tag: result = name##_sample_towards(name##_record(record_index(ref)), point, u); break;
         LIGHT_CLASSES(CASE)
 #undef CASE
     }
@@ -61,7 +61,7 @@ LightSample light_sample_towards(uint ref, vec3 point, vec2 u) {
 float light_pdf_towards(uint ref, vec3 point, vec3 direction, LightHit hit) {
     float result = 0.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_pdf_towards(name##_records[record_index(ref)], point, direction, hit); break;
+#define CASE(tag, Struct, name) case tag: result = name##_pdf_towards(name##_record(record_index(ref)), point, direction, hit); break;
         LIGHT_CLASSES(CASE)
 #undef CASE
     }
@@ -71,7 +71,7 @@ float light_pdf_towards(uint ref, vec3 point, vec3 direction, LightHit hit) {
 Spectrum light_radiance(uint ref, vec3 direction, LightHit hit) {
     Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_radiance(name##_records[record_index(ref)], direction, hit); break;
+#define CASE(tag, Struct, name) case tag: result = name##_radiance(name##_record(record_index(ref)), direction, hit); break;
         LIGHT_CLASSES(CASE)
 #undef CASE
     }
@@ -81,7 +81,7 @@ Spectrum light_radiance(uint ref, vec3 direction, LightHit hit) {
 float light_power(uint ref, SceneBounds bounds) {
     float result = 0.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_power(name##_records[record_index(ref)], bounds); break;
+#define CASE(tag, Struct, name) case tag: result = name##_power(name##_record(record_index(ref)), bounds); break;
         LIGHT_CLASSES(CASE)
 #undef CASE
     }
@@ -91,7 +91,7 @@ float light_power(uint ref, SceneBounds bounds) {
 void light_bounds(uint ref, out vec3 lo, out vec3 hi) {
     lo = vec3(1), hi = vec3(-1);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: name##_bounds(name##_records[record_index(ref)], lo, hi); break;
+#define CASE(tag, Struct, name) case tag: name##_bounds(name##_record(record_index(ref)), lo, hi); break;
         LIGHT_CLASSES(CASE)
 #undef CASE
     }
@@ -100,7 +100,7 @@ void light_bounds(uint ref, out vec3 lo, out vec3 hi) {
 LightCone light_cone(uint ref) {
     LightCone result = whole_sphere_cone();
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_cone(name##_records[record_index(ref)]); break;
+#define CASE(tag, Struct, name) case tag: result = name##_cone(name##_record(record_index(ref))); break;
         LIGHT_CLASSES(CASE)
 #undef CASE
     }

@@ -13,7 +13,7 @@
 float medium_ior(uint ref) {
     float result = 1.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_ior(name##_records[record_index(ref)]); break;
+#define CASE(tag, Struct, name) case tag: result = name##_ior(name##_record(record_index(ref))); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }
@@ -23,7 +23,7 @@ float medium_ior(uint ref) {
 Spectrum medium_transmittance(uint ref, float distance) {
     Spectrum result = Spectrum(1);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_transmittance(name##_records[record_index(ref)], distance); break;
+#define CASE(tag, Struct, name) case tag: result = name##_transmittance(name##_record(record_index(ref)), distance); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }

@@ -18,7 +18,7 @@ struct CameraRay {
 CameraRay receiver_emit(uint ref, vec2 film, float film_aspect) {
     CameraRay result = CameraRay(vec3(0), vec3(0, 0, 1), 0.0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_emit(name##_records[record_index(ref)], film, film_aspect); break;
+#define CASE(tag, Struct, name) case tag: result = name##_emit(name##_record(record_index(ref)), film, film_aspect); break;
         RECEIVER_CLASSES(CASE)
 #undef CASE
     }

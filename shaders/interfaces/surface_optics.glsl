@@ -45,7 +45,7 @@ BsdfSample no_bsdf_sample() { return BsdfSample(vec3(0, 0, 1), Spectrum(0), 0.0,
 Spectrum surface_eval(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
     Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_eval(name##_records[record_index(ref)], c, wo, wi); break;
+#define CASE(tag, Struct, name) case tag: result = name##_eval(name##_record(record_index(ref)), c, wo, wi); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }
@@ -55,7 +55,7 @@ Spectrum surface_eval(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
 float surface_pdf(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
     float result = 0.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_pdf(name##_records[record_index(ref)], c, wo, wi); break;
+#define CASE(tag, Struct, name) case tag: result = name##_pdf(name##_record(record_index(ref)), c, wo, wi); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }
@@ -65,7 +65,7 @@ float surface_pdf(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
 BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
     BsdfSample result = no_bsdf_sample();
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_sample(name##_records[record_index(ref)], c, wo, u); break;
+#define CASE(tag, Struct, name) case tag: result = name##_sample(name##_record(record_index(ref)), c, wo, u); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }
@@ -75,7 +75,7 @@ BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
 Spectrum surface_transparency(uint ref, SurfaceContext c, vec3 wo) {
     Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_transparency(name##_records[record_index(ref)], c, wo); break;
+#define CASE(tag, Struct, name) case tag: result = name##_transparency(name##_record(record_index(ref)), c, wo); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }
@@ -85,7 +85,7 @@ Spectrum surface_transparency(uint ref, SurfaceContext c, vec3 wo) {
 bool surface_is_delta(uint ref, SurfaceContext c) {
     bool result = true;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_is_delta(name##_records[record_index(ref)], c); break;
+#define CASE(tag, Struct, name) case tag: result = name##_is_delta(name##_record(record_index(ref)), c); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }

@@ -37,8 +37,16 @@ vec3 ggx_sample_visible(vec3 wo, float alpha, vec2 u) {
     return normalize(vec3(h.xy * alpha, max(h.z, 1e-10)));
 }
 
+// The facet normal that reflects wo into wi, both above. Opposite directions at the horizon have none: then the
+// surface's own, which keeps all that follows finite.
+vec3 reflection_normal(vec3 wo, vec3 wi) {
+    vec3 h = wo + wi;
+    float l2 = dot(h, h);
+    return l2 > 1e-14 ? h * inversesqrt(l2) : vec3(0, 0, 1);
+}
+
 // f |cos wi| of a mirror-like facet that reflects everything, 1/sr: D G1(wo) G1(wi) / (4 wo.z) (Walter et al.
-// 2007 eq. 20). h = normalize(wo + wi), wi.z > 0.
+// 2007 eq. 20). wi.z > 0.
 float ggx_reflection(vec3 wo, vec3 wi, vec3 h, float alpha) {
     return ggx_d(h, alpha) * ggx_g1(wi.z, alpha) / (2.0 * (wo.z + ggx_slant(wo.z, alpha)));
 }

@@ -127,6 +127,7 @@ float ggx_dielectric_multiscatter_transmission(float alpha, float eta) {
 float ggx_dielectric_multiscatter(float mu_o, float mu_i, float alpha, float eta) {
     float transmitted = ggx_dielectric_multiscatter_transmission(alpha, eta);
     float eta_i = mu_i > 0.0 ? eta : 1.0 / eta;
-    return (mu_i > 0.0 ? 1.0 - transmitted : transmitted) * ggx_dielectric_loss(mu_o, alpha, eta) *
-           ggx_dielectric_loss(abs(mu_i), alpha, eta_i) * abs(mu_i) / (PI * ggx_dielectric_average_loss(alpha, eta_i));
+    float losses = ggx_dielectric_loss(mu_o, alpha, eta) * ggx_dielectric_loss(abs(mu_i), alpha, eta_i);
+    return (mu_i > 0.0 ? 1.0 - transmitted : transmitted) * losses * abs(mu_i) /
+           (PI * ggx_dielectric_average_loss(alpha, eta_i));
 }

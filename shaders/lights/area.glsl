@@ -38,9 +38,24 @@ Spectrum area_radiance(AreaLight r, vec3 direction, LightHit hit) {
     return material_emission(r.material, dot(hit.normal, direction) < 0.0, hit.uv0, hit.uv1);
 }
 
+// Luminance, averaged over the surface. With a texture over 4 x 4 of its points; a part that they miss may still hold a bright
+// texel, so it keeps a hundredth of the material's own mean.
+float area_mean_luminance(AreaLight r) {
+    float mean = luminance(material_mean_emission(r.material));
+    if (materials[r.material].emission_texture.index == NO_RECORD) return mean;
+    float sum = 0.0;
+    for (uint i = 0u; i < 16u; i++) {
+        vec2 uv0, uv1;
+        GeometrySample g = primitive_sample_towards(r.primitive, vec3(0), (vec2(i & 3u, i >> 2) + 0.5) * 0.25);
+        primitive_uv(r.primitive, g.position, uv0, uv1);
+        sum += luminance(material_emission(r.material, true, uv0, uv1));
+    }
+    return max(sum / 16.0, 0.01 * mean);
+}
+
 float area_power(AreaLight r, SceneBounds bounds) {
     float sides = material_emits_both_sides(r.material) ? 2.0 : 1.0;
-    return sides * PI * primitive_area(r.primitive) * luminance(material_mean_emission(r.material));
+    return sides * PI * primitive_area(r.primitive) * area_mean_luminance(r);
 }
 
 void area_bounds(AreaLight r, out vec3 lo, out vec3 hi) { primitive_bounds(r.primitive, lo, hi); }

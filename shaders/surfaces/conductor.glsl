@@ -12,7 +12,7 @@
 struct Conductor {
     SpectrumRef eta;          //: 0 in [0, inf). Real part of the refractive index.
     SpectrumRef k;            //: 1 in [0, inf). Extinction coefficient.
-    SpectrumRef reflectance;  //: none in [0, 1]. Reflected at every angle, instead of by eta and k. none = -1.
+    SpectrumRef reflectance;  //: none in [0, 1]. Reflected at every angle, instead of eta and k. none = -1.
     float alpha;              //: 0 in [0, 1]. GGX width; below 1e-4 the surface is perfectly smooth.
     bool multiscatter;        //: false. Keeps the light that is reflected more than once between facets.
 };
@@ -44,7 +44,7 @@ Spectrum conductor_eval(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
     float side = wo.z < 0.0 ? -1.0 : 1.0;
     wo.z *= side, wi.z *= side;
     if (wi.z <= 0.0 || r.alpha < SMOOTH_ALPHA) return Spectrum(0);
-    vec3 h = normalize(wo + wi);
+    vec3 h = reflection_normal(wo, wi);
     Spectrum f = conductor_fresnel(r, c, side, dot(wo, h)) * ggx_reflection(wo, wi, h, r.alpha);
     if (r.multiscatter)
         f += conductor_multiscatter_tint(r, c, side) * (ggx_loss(wo.z, r.alpha) * ggx_loss(wi.z, r.alpha) *
@@ -57,7 +57,7 @@ float conductor_pdf(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
     wo.z *= side, wi.z *= side;
     if (wi.z <= 0.0 || r.alpha < SMOOTH_ALPHA) return 0.0;
     float multiscatter = conductor_multiscatter_part(r, wo.z);
-    return mix(ggx_reflection_pdf(wo, normalize(wo + wi), r.alpha), INV_PI * wi.z, multiscatter);
+    return mix(ggx_reflection_pdf(wo, reflection_normal(wo, wi), r.alpha), INV_PI * wi.z, multiscatter);
 }
 
 BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {

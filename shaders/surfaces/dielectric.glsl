@@ -37,7 +37,7 @@ Spectrum dielectric_eval(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
     wo.z *= side, wi.z *= side;
     float eta = dielectric_eta(c, side);
     bool reflects = wi.z > 0.0;
-    vec3 h = reflects ? normalize(wo + wi) : refraction_normal(wo, wi, eta);
+    vec3 h = reflects ? reflection_normal(wo, wi) : refraction_normal(wo, wi, eta);
     float f = fresnel_dielectric(dot(wo, h), eta);
     float value = reflects ? f * ggx_reflection(wo, wi, h, r.alpha)
                            : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta) * ggx_g1(-wi.z, r.alpha);
@@ -51,7 +51,7 @@ float dielectric_pdf(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
     wo.z *= side, wi.z *= side;
     float eta = dielectric_eta(c, side);
     bool reflects = wi.z > 0.0;
-    vec3 h = reflects ? normalize(wo + wi) : refraction_normal(wo, wi, eta);
+    vec3 h = reflects ? reflection_normal(wo, wi) : refraction_normal(wo, wi, eta);
     float f = fresnel_dielectric(dot(wo, h), eta);
     float single = reflects ? f * ggx_reflection_pdf(wo, h, r.alpha)
                             : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta);

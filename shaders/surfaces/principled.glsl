@@ -3,11 +3,12 @@
 // lets light through, by `transmission`).
 //
 // Differences from the appendix, which leaves energy to the implementer:
-// - The diffuse part is c (1 - D(wo)) (1 - D(wi)) / (pi (1 - D_avg)), where D bounds the albedo of the specular
-//   part from above. So the sum never exceeds 1, and it stays reciprocal; smooth and with c = 1 nothing is lost.
+// - The diffuse part is c (1 - D(wo)) (1 - D(wi)) / (pi (1 - D_avg)), where D bounds the albedo of the
+//   specular part from above. So the sum never exceeds 1, and it stays reciprocal; smooth and with c = 1
+//   nothing is lost.
 // - Roughness below 0.01 (alpha below 1e-4) is a perfect mirror.
-// - Not thin (KHR_materials_volume), the transmitting part refracts between the two media as the class `dielectric`
-//   does, tinted by the base color at each transmission. Thin and smooth, light passes straight on.
+// - Not thin (KHR_materials_volume), the transmitting part refracts between the two media as the class
+//   `dielectric` does, tinted by the base color at each transmission. Thin and smooth, light passes straight on.
 //   Rough facets count as smooth where the media match so nearly that refraction is not resolved.
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
@@ -145,7 +146,7 @@ Spectrum principled_evaluate(PrincipledMaterial m, vec3 wo, vec3 wi, out float p
 
     bool refracts = !reflects && !m.thin;
     vec3 mirrored = vec3(wi.xy, abs(wi.z));
-    vec3 h = refracts ? refraction_normal(wo, wi, m.eta) : normalize(wo + mirrored);
+    vec3 h = refracts ? refraction_normal(wo, wi, m.eta) : reflection_normal(wo, mirrored);
     Spectrum reflected, transmitted;
     principled_facet(m, dot(wo, h), reflected, transmitted);
     float reflection_part = principled_reflection_part(reflected, transmitted);
