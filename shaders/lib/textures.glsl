@@ -67,6 +67,7 @@ vec4 texel_value(Texture t, uint x, uint y) {
 void texel_pair(float u, uint size, uint wrap, bool nearest, out uvec2 pair, out float weight) {
     float folded = 1.0 - abs(u - 2.0 * floor(0.5 * u) - 1.0);
     float inside = wrap == WRAP_REPEAT ? u - floor(u) : wrap == WRAP_MIRROR ? folded : clamp(u, 0.0, 1.0);
+    inside = inside >= 0.0 ? min(inside, 1.0) : 0.0;  // a coordinate that overflowed to NaN is taken for 0
     float x = inside * float(size) - (nearest ? 0.0 : 0.5);
     int last = int(size) - 1;
     int low = clamp(int(floor(x)), -1, last);
