@@ -45,6 +45,8 @@ struct FilmState {
 
 const char* schedule_name(Schedule schedule);
 
+Schedule choose_schedule(const Scene& scene);
+
 class Renderer {
   public:
     Renderer(Device& device, Scene& scene, const RenderSettings& settings);

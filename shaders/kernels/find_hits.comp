@@ -16,9 +16,20 @@ layout(scalar) writeonly buffer Hits { vec4 hits[]; };
 #if HAS_INSTANCES
 layout(scalar) writeonly buffer HitInstances { uint hit_instances[]; };
 #endif
-layout(push_constant, scalar) uniform Arguments { uint ray_count; };
+#if HAS_RAY_QUEUE
+layout(scalar) readonly buffer RayQueue { uint ray_queue[]; };
+layout(scalar) readonly buffer QueueCounts { uint queue_counts[]; };  // of bounce b: rays at 2 b
+layout(push_constant, scalar) uniform Push { uint bounce, read_queue; };
+#define RAY_COUNT queue_counts[2u * bounce]
+#define QUEUED_RAY(i) ray_queue[read_queue + i]
+#else
+layout(push_constant, scalar) uniform Push { uint ray_count; };
+#define RAY_COUNT ray_count
+#define QUEUED_RAY(i) i
+#endif
 
 void main() {
+    uint count = RAY_COUNT;
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint next = gl_GlobalInvocationID.x;
     uint ray = NO_RECORD;
@@ -32,8 +43,8 @@ void main() {
                 hit_instances[ray] = walk.hit.instance;
 #endif
             }
-            if (next >= ray_count) break;
-            ray = next;
+            if (next >= count) break;
+            ray = QUEUED_RAY(next);
             next += stride;
             vec4 direction = ray_directions[ray];
             traversal_begin(walk, ray_origins[ray].xyz, direction.xyz, direction.w);
