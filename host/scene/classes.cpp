@@ -217,8 +217,6 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
     text += '\n';
     for (const ClassInfo* info : classes) {
         text += fmt::format("#include \"{}\"\n", info->file);
-        // Triangles are not records of their own buffer: they are read in place, from the primitives.
-        if (interface.interface == Interface::geometry && info->name == "triangle") continue;
         // All classes of an interface are views of one buffer, on one binding.
         text += fmt::format("layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {} {}_records[]; }};\n",
                             int(interface.interface), interface.buffer, info->name, info->record, info->name);
