@@ -21,7 +21,8 @@ const char* overview =
 // Arguments as text; CLI11's own conversions take NaN, hexadecimal and trailing characters for numbers.
 struct RenderArguments {
     std::optional<std::string> passes, seconds, error, size;
-    std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto";
+    std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto",
+                schedule = "auto";
 };
 
 uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most) {
@@ -102,6 +103,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
         ->option_text("auto|rgb");
     render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
         ->option_text("auto|off");
+    render->add_option("--schedule", arguments.schedule, "Whole paths in one kernel, or a kernel a stage (default: auto)")
+        ->option_text("auto|fused|wavefront");
     render->add_option("--seed", arguments.seed, "Seed of the random numbers (default: 0)")->option_text("N");
     render->add_option("--device", options.device, "Vulkan device (default: the best; see: etendue devices)")
         ->option_text("NAME|INDEX");
@@ -140,6 +143,9 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.polarization = parse_choice<PolarizationMode>(
         arguments.polarization, "--polarization",
         {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});
+    options.schedule = parse_choice<Schedule>(
+        arguments.schedule, "--schedule",
+        {{"auto", Schedule::automatic}, {"fused", Schedule::fused}, {"wavefront", Schedule::wavefront}});
     if (options.output.empty()) options.output = default_output(options.scene);
     if (options.output.extension() != ".exr")
         fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",

@@ -12,6 +12,13 @@ enum class Algorithm { automatic, backward };
 enum class ColorMode { automatic, rgb };
 enum class PolarizationMode { automatic, off };
 
+// How a pass is divided into kernels; the image does not depend on it.
+enum class Schedule {
+    automatic,  // by the scene
+    fused,      // whole paths in one kernel
+    wavefront,  // a kernel a stage, paths in memory between them
+};
+
 struct ImageSize {
     uint32_t width = 0, height = 0;
 };
@@ -27,6 +34,7 @@ struct RenderOptions {
     Algorithm algorithm = Algorithm::automatic;
     ColorMode color = ColorMode::automatic;
     PolarizationMode polarization = PolarizationMode::automatic;
+    Schedule schedule = Schedule::automatic;
     uint64_t seed = 0;
     std::string device;  // name, part of one, or index; empty = the best there is
     std::filesystem::path checkpoint, resume, stats;  // empty = none

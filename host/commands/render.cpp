@@ -135,6 +135,7 @@ int render_command(const RenderOptions& given) {
     RenderSettings settings;
     settings.width = options.size->width, settings.height = options.size->height;
     settings.receiver = receiver.ref;
+    settings.schedule = options.schedule;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
     Renderer renderer(*device, scene, settings);
     const nlohmann::json identity = checkpoint_identity(options, *options.size, receiver, *device);

@@ -9,17 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "host/commands.h"
 #include "host/gpu/kernel.h"
 #include "host/image/image.h"
 #include "host/scene/scene.h"
 
 namespace etendue {
-
-enum class Schedule {
-    automatic,  // fused where the scene has few classes and a small hierarchy, else wavefront
-    fused,      // whole paths in one kernel
-    wavefront,  // a kernel a stage, paths in memory between them
-};
 
 struct RenderSettings {
     uint32_t width = 512, height = 512;

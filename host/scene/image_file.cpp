@@ -4,7 +4,6 @@
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
-#define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -21,6 +20,7 @@
 #include "host/error.h"
 #include "host/image/atomic_file.h"
 #include "host/image/exr.h"
+#include "host/scene/image_radiance.h"
 
 namespace etendue {
 namespace {
@@ -101,26 +101,20 @@ ImageDescription decode_image(std::span<const uint8_t> bytes, const std::string&
     ImageDescription image;
     if (is_exr(bytes)) {
         image = decode_exr(bytes, where);
+    } else if (is_radiance(bytes)) {
+        image = decode_radiance(bytes, where, max_texels);
     } else {
         int width = 0, height = 0, channels = 0, size = int(std::min(bytes.size(), size_t(INT_MAX)));
         if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
             fail_input("{}: not an image that can be read; PNG, JPEG, Radiance .hdr and OpenEXR are", where);
         check_size(uint64_t(width), uint64_t(height), where);
         image.width = uint32_t(width), image.height = uint32_t(height);
-        size_t count = 4 * size_t(width) * size_t(height);
         Source source{bytes};
-        if (stbi_is_hdr_from_memory(bytes.data(), size)) {
-            std::unique_ptr<float, StbiFree> pixels(
-                stbi_loadf_from_callbacks(&source_callbacks, &source, &width, &height, &channels, 4));
-            if (pixels) image.rgba32f.assign(pixels.get(), pixels.get() + count);
-        } else {
-            std::unique_ptr<uint8_t, StbiFree> pixels(
-                stbi_load_from_callbacks(&source_callbacks, &source, &width, &height, &channels, 4));
-            if (pixels) image.rgba8.assign(pixels.get(), pixels.get() + count);
-        }
+        std::unique_ptr<uint8_t, StbiFree> pixels(
+            stbi_load_from_callbacks(&source_callbacks, &source, &width, &height, &channels, 4));
         if (source.ran_out) fail_input("{}: the image is truncated", where);
-        if (image.rgba8.empty() && image.rgba32f.empty())
-            fail_input("{}: the image is damaged: {}", where, stbi_failure_reason());
+        if (!pixels) fail_input("{}: the image is damaged: {}", where, stbi_failure_reason());
+        image.rgba8.assign(pixels.get(), pixels.get() + 4 * size_t(width) * size_t(height));
     }
     check_finite(image, where);
     return image;

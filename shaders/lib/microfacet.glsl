@@ -58,8 +58,9 @@ float ggx_reflection_pdf(vec3 wo, vec3 h, float alpha) {
 
 // The facet normal that refracts wo (above) into wi (below), on the side of wo (Walter et al. 2007 eq. 16).
 vec3 refraction_normal(vec3 wo, vec3 wi, float eta) {
-    vec3 h = normalize(wo + eta * wi);
-    return h.z < 0.0 ? -h : h;
+    vec3 h = wo + eta * wi;
+    float l2 = dot(h, h);
+    return l2 > 1e-14 ? h * (h.z < 0.0 ? -inversesqrt(l2) : inversesqrt(l2)) : vec3(0, 0, 1);
 }
 
 // Density of refracting into wi at a visible facet, 1/sr: the density of h times eta² |wi·h| / (wo·h + eta
@@ -68,7 +69,7 @@ vec3 refraction_normal(vec3 wo, vec3 wi, float eta) {
 // part.
 float ggx_refraction_pdf(vec3 wo, vec3 wi, vec3 h, float alpha, float eta) {
     float cos_o = dot(wo, h), cos_i = -dot(wi, h);
-    if (cos_o <= 0.0 || cos_i <= 0.0) return 0.0;
+    if (cos_o <= 0.0 || cos_i <= 0.0 || eta == 1.0) return 0.0;
     float root = (eta - 1.0) * (eta + 1.0) / (cos_o + eta * cos_i);
     return ggx_visible_d(wo, h, alpha) * eta * eta * cos_i / (root * root);
 }

@@ -21,8 +21,7 @@ float ggx_average_loss(float alpha) {
 
 // The same for dielectric facets that reflect and refract: the part of the light from mu that neither leaves
 // above nor below. Small networks of one hidden layer, y = z / sqrt(1 + z²), trained for indices 1.2 to 2.4
-// (beyond, the nearest of these is taken): the albedo is within 0.002 (eta > 1) and 0.005 (eta < 1), 1 % at
-// grazing angles of alpha < 0.05.
+// (beyond, the nearest of these is taken): the albedo is within 0.002 (eta > 1) and 0.005 (eta < 1).
 float ggx_dielectric_loss(float mu, float alpha, float eta) {
     float inv_index = clamp(min(eta, 1.0 / eta), 1.0 / 2.4, 1.0 / 1.2);
     float width = alpha * (eta > 1.0 ? 1.0 : 0.7);
@@ -73,40 +72,28 @@ float ggx_dielectric_loss(float mu, float alpha, float eta) {
     return clamp(1.0 - sum, 5e-4, 1.0);
 }
 
-// 2 ∫ ggx_dielectric_loss(mu, alpha, eta) mu dmu; a network as well.
+// 2 ∫ ggx_dielectric_loss(mu, alpha, eta) mu dmu: the logarithm is a polynomial in alpha^(1/4) and the index.
 float ggx_dielectric_average_loss(float alpha, float eta) {
-    float a = max(alpha, 1e-3);
-    vec3 x = vec3(clamp(min(eta, 1.0 / eta), 1.0 / 2.4, 1.0 / 1.2), sqrt(a), a);
-    vec4 z;
+    float v = sqrt(sqrt(max(alpha, 1e-3))) - 0.75;
+    float u = clamp(min(eta, 1.0 / eta), 1.0 / 2.4, 1.0 / 1.2) - 0.65;
     float sum;
     if (eta > 1.0) {
-        sum = -3.29346;
-        z = vec4(0.5546, -0.5859, -2.4018, -1.6887) * x.x + vec4(-4.3942, 11.2867, 4.2656, 1.5600) * x.y +
-            vec4(-11.6412, 3.9440, 4.0921, -0.8203) * x.z +
-            vec4(0.8603, -1.0137, -0.1377, -0.0172);
-        sum += dot(vec4(-1.06871, 0.88934, 0.75233, 1.02282), z * inversesqrt(1.0 + z * z));
-        z = vec4(0.0517, -1.2149, 2.1625, -0.2436) * x.x + vec4(-1.6525, 0.4958, -4.3966, 1.5756) * x.y +
-            vec4(-0.3265, -1.3957, 0.6400, 1.7358) * x.z +
-            vec4(1.3179, 1.3787, -0.8489, -0.9017);
-        sum += dot(vec4(-0.82323, -0.58239, 2.32477, 1.22678), z * inversesqrt(1.0 + z * z));
-        z = vec4(-12.6976, -6.8087, 8.1160, 1.5515) * x.x + vec4(-2.5370, 0.2148, -1.3741, 1.1125) * x.y +
-            vec4(29.9782, -29.9426, 29.0144, 0.0949) * x.z +
-            vec4(9.0572, 3.9842, -4.3542, 0.5338);
-        sum += dot(vec4(0.57922, -1.33251, -1.40690, -0.45307), z * inversesqrt(1.0 + z * z));
+        sum = 102.6993 + u * (-29.8536 + u * (-2279.9879 + u * (-11632.9766)));
+        sum = 10.2375 + u * (9.8241 + u * (-2044.1863 + u * (-6740.1186))) + v * sum;
+        sum = -23.8788 + u * (-6.8216 + u * (110.4883 + u * (2354.5726))) + v * sum;
+        sum = -5.2405 + u * (-10.3386 + u * (279.5314 + u * (813.2880))) + v * sum;
+        sum = -2.9266 + u * (2.7008 + u * (-41.6065 + u * (-320.5975))) + v * sum;
+        sum = 8.2779 + u * (-0.6486 + u * (-5.0527 + u * (30.6842))) + v * sum;
+        sum = -3.1084 + u * (-0.5524 + u * (2.3162 + u * (-0.0789))) + v * sum;
     } else {
-        sum = -1.54765;
-        z = vec4(0.6178, -0.7865, 1.1181, -1.6680) * x.x + vec4(-7.4479, 2.8789, 2.2510, 0.7894) * x.y +
-            vec4(-1.1171, 3.7761, -1.7540, 1.9618) * x.z +
-            vec4(0.9914, -1.9647, -1.5815, 0.9646);
-        sum += dot(vec4(-1.73626, -0.12262, 1.57426, 5.30621), z * inversesqrt(1.0 + z * z));
-        z = vec4(-10.3115, -9.0741, 11.9023, 8.4373) * x.x + vec4(-0.7168, 0.1699, -1.2098, -0.5279) * x.y +
-            vec4(-3.4501, 1.2479, -0.9730, -1.5738) * x.z +
-            vec4(3.5096, 7.0008, -8.7244, -7.2517);
-        sum += dot(vec4(-3.45487, 12.22756, 6.96708, 10.05828), z * inversesqrt(1.0 + z * z));
-        z = vec4(0.6715, 9.2082, 3.7277, 2.6944) * x.x + vec4(15.4334, -3.2576, 4.3708, -1.6987) * x.y +
-            vec4(-7.3767, 0.2869, 15.1318, -0.9864) * x.z +
-            vec4(-2.3294, -4.9747, -2.0335, 1.1274);
-        sum += dot(vec4(0.86141, 1.38384, -2.99124, -0.46469), z * inversesqrt(1.0 + z * z));
+        sum = 630.3630 + u * (-1889.5048 + u * (-3780.1757 + u * (1099.8942)));
+        sum = 598.1343 + u * (-1659.4151 + u * (-5590.6737 + u * (12554.6834))) + v * sum;
+        sum = -55.4786 + u * (56.2844 + u * (-954.0479 + u * (3894.0750))) + v * sum;
+        sum = -73.0359 + u * (221.2206 + u * (926.1208 + u * (-1557.8576))) + v * sum;
+        sum = 11.9001 + u * (9.9386 + u * (113.4171 + u * (-24.6971))) + v * sum;
+        sum = -9.5258 + u * (-6.8328 + u * (-33.6296 + u * (-33.0532))) + v * sum;
+        sum = 6.6568 + u * (-3.6732 + u * (-5.7193 + u * (13.4659))) + v * sum;
+        sum = -1.6634 + u * (-0.0421 + u * (-1.9521 + u * (-5.3207))) + v * sum;
     }
     return exp(sum);
 }

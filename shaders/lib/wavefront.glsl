@@ -2,6 +2,7 @@
 //
 // Slots are dealt to samples of pixels: slot = sample * tile_pixels + pixel within the tile. Ray state is split by who
 // reads it: find_hits needs the first two arrays only.
+#include "lib/constants.glsl"
 #include "lib/path.glsl"
 
 layout(scalar, set = 0) buffer RayOrigins { vec4 ray_origins[]; };        // xyz, w pdf of the direction
