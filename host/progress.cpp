@@ -53,8 +53,9 @@ double fraction_done(const RenderStatus& status) {
 std::optional<double> seconds_left(const RenderStatus& status) {
     if (status.seconds_goal) return std::max(0.0, *status.seconds_goal - status.seconds);
     double fraction = fraction_done(status);
-    if (fraction <= 0 || status.seconds <= 0) return std::nullopt;
-    return status.seconds * (1 - fraction) / fraction;
+    if (fraction <= 0 || status.seconds <= 0 || status.passes <= status.passes_before) return std::nullopt;
+    double passes_left = double(status.passes) * (1 - fraction) / fraction;
+    return passes_left * status.seconds / double(status.passes - status.passes_before);
 }
 
 std::string progress_line(const RenderStatus& status) {

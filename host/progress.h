@@ -10,8 +10,9 @@ namespace etendue {
 // Where a render stands. What it runs towards is one of the three goals; without any it runs until stopped.
 struct RenderStatus {
     uint64_t passes = 0;          // done
-    double seconds = 0;           // since the first pass began
-    double rays = 0;              // traced
+    uint64_t passes_before = 0;   // of them, those of earlier runs (--resume)
+    double seconds = 0;           // since the first pass of this run began
+    double rays = 0;              // traced in this run
     std::optional<double> error;  // estimated, once it can be
     std::optional<uint64_t> passes_goal;
     std::optional<double> seconds_goal, error_goal;

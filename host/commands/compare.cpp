@@ -12,10 +12,12 @@
 namespace etendue {
 namespace {
 
-void print_z_test(const ZTest& test) {
-    fmt::print("z-test    {}: {:.2f} % of |z| beyond 3 (0.27 % expected), largest {:.2f} at ({}, {})\n",
-               test.passes ? "equal within noise" : "DIFFERENT", 100 * test.beyond_3, test.max_z, test.x,
-               test.y);
+void print_z_test(const char* label, const ZTest& test) {
+    fmt::print(
+        "{}  {}: largest |z| {:.2f} at ({}, {}), {:.2f} % beyond 3 (0.27 % expected), rms {:.2f} (1 "
+        "expected)\n",
+        label, test.passes ? "equal within noise" : "DIFFERENT", test.max_z, test.x, test.y,
+        100 * test.beyond_3, test.rms_z);
     fmt::print("          least p {:.3g}, limit {:.3g} for {} tests (Šidák, 1 % false alarms)\n",
                test.p_value, test.p_limit, test.tests);
 }
@@ -29,11 +31,12 @@ void print_comparison(const CompareOptions& options, const Comparison& compariso
     for (size_t c = 0; c < comparison.channels.size(); ++c)
         fmt::print("  {} {:+.4f} %", comparison.channels[c], 100 * comparison.channel_bias[c]);
     fmt::print("\n");
-    if (comparison.z_test) print_z_test(*comparison.z_test);
+    if (comparison.z_test) print_z_test("z, pixels", *comparison.z_test);
+    if (comparison.tile_test) print_z_test("z, 16x16 ", *comparison.tile_test);
     for (const PixelDifference& pixel : comparison.worst)
         fmt::print("worst     ({}, {})  {:.4g}  image {:.5g}  reference {:.5g}\n", pixel.x, pixel.y,
                    pixel.relative_squared, fmt::join(pixel.image, " "), fmt::join(pixel.reference, " "));
-    fmt::print("nonfinite {} pixels in the image, {} in the reference{}\n", comparison.nonfinite_image,
+    fmt::print("nonfinite {} pixel(s) in the image, {} in the reference{}\n", comparison.nonfinite_image,
                comparison.nonfinite_reference,
                comparison.nonfinite_image + comparison.nonfinite_reference ? " (left out of the rest)" : "");
 }

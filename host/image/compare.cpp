@@ -117,6 +117,7 @@ Comparison compare_images(const Image& image, const Image& reference, const std:
                                 values_at(a, p), values_at(b, p)});
     }
     result.z_test = z_test(image, reference, result.channels);
+    result.tile_test = z_test(image, reference, result.channels, z_tile);
     return result;
 }
 

@@ -26,10 +26,13 @@ struct ZTest {
     double max_z = 0;       // largest |z|
     uint32_t x = 0, y = 0;  // where it is (the tile's first pixel)
     double beyond_3 = 0;    // fraction of |z| > 3; 0.0027 is expected of Gaussian noise
-    double p_value = 1;     // of the least probable value
-    double p_limit = 0;     // passes where p_value >= p_limit
+    double rms_z = 0;    // 1 is expected; less where the errors are overestimated, as by stratified samples
+    double p_value = 1;  // of the least probable value
+    double p_limit = 0;  // passes where p_value >= p_limit
     bool passes = true;
 };
+
+inline constexpr uint32_t z_tile = 16;
 
 struct Comparison {
     uint32_t width = 0, height = 0;
@@ -41,6 +44,7 @@ struct Comparison {
     std::vector<PixelDifference> worst;  // worst first
     size_t nonfinite_image = 0, nonfinite_reference = 0;  // pixels
     std::optional<ZTest> z_test;                          // where both images have an error layer
+    std::optional<ZTest> tile_test;                       // the same over tiles of z_tile * z_tile pixels
 };
 
 // Compares R, G, B where both have them, else all channels but A and the layers of --aovs. Fails with one

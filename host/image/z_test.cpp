@@ -97,6 +97,7 @@ std::optional<ZTest> z_test(const Image& image, const Image& reference,
     ZTest result;
     result.p_value = 1;
     size_t beyond = 0;
+    double sum_squared = 0;
     for (const Channel& channel : selected)
         for (uint32_t y = 0; y < image.height; y += tile)
             for (uint32_t x = 0; x < image.width; x += tile) {
@@ -110,12 +111,13 @@ std::optional<ZTest> z_test(const Image& image, const Image& reference,
                                  ? mean.variance * mean.variance / mean.weighted_variance
                                  : std::numeric_limits<double>::infinity();
                 ++result.tests;
-                beyond += z > 3;
+                beyond += z > 3, sum_squared += z * z;
                 if (z > result.max_z) result.max_z = z, result.x = x, result.y = y;
                 if (z > 2) result.p_value = std::min(result.p_value, student_two_sided(z, dof));
             }
     if (result.tests == 0) return result;
     result.beyond_3 = double(beyond) / double(result.tests);
+    result.rms_z = std::sqrt(sum_squared / double(result.tests));
     result.p_limit = -std::expm1(std::log1p(-alpha) / double(result.tests));
     result.passes = result.p_value >= result.p_limit;
     return result;

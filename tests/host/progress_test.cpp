@@ -38,6 +38,8 @@ TEST_CASE("the time left follows from passes, from time, and from error squared"
     CHECK(*seconds_left({.passes = 9, .seconds = 5, .error = 0.02, .error_goal = 0.01}) ==
           doctest::Approx(15));
     CHECK(!seconds_left({.passes = 9, .seconds = 5, .error_goal = 0.01}));
+    CHECK(*seconds_left({.passes = 50, .passes_before = 40, .seconds = 5, .passes_goal = 100}) ==
+          doctest::Approx(25));
     CHECK(*seconds_left({.passes = 3, .seconds = 14, .seconds_goal = 10}) == 0);
 }
 
@@ -84,7 +86,8 @@ TEST_CASE("without a terminal a line comes every few seconds and the last state 
 TEST_CASE("without a terminal powers of two passes have their line") {
     Recorder recorder;
     Progress progress{.style = ProgressStyle::lines, .stream = recorder.stream};
-    for (uint64_t pass = 1; pass <= 4; ++pass) show_progress(progress, {.passes = pass, .seconds = double(pass) * 1.5});
+    for (uint64_t pass = 1; pass <= 4; ++pass)
+        show_progress(progress, {.passes = pass, .seconds = double(pass) * 1.5});
     CHECK(recorder.read().find("2 passes") != std::string::npos);
     CHECK(recorder.read().find("3 passes") == std::string::npos);
     CHECK(recorder.read().find("4 passes") != std::string::npos);
