@@ -1,7 +1,9 @@
 // The executable: runs one command and turns errors into one line and an exit code.
+#include <algorithm>
 #include <cstdio>
 #include <fmt/core.h>
 #include <new>
+#include <string>
 #include <variant>
 
 #include "host/cli.h"
@@ -26,7 +28,9 @@ int run(int argc, char** argv) {
                       parse_command_line(argc, argv));
 }
 
-int report(ExitCode code, const char* line) {
+int report(ExitCode code, std::string line) {
+    while (!line.empty() && line.back() == '\n') line.pop_back();
+    std::replace(line.begin(), line.end(), '\n', ' ');
     std::fflush(stdout);
     fmt::print(stderr, "etendue: {}\n", line);
     return int(code);
@@ -36,7 +40,9 @@ int report(ExitCode code, const char* line) {
 
 int main(int argc, char** argv) {
     try {
-        return run(argc, argv);
+        const int code = run(argc, argv);
+        if (std::fflush(stdout) != 0) fail_input("standard output cannot be written");
+        return code;
     } catch (const Error& error) {
         return report(error.code, error.what());
     } catch (const std::bad_alloc&) {

@@ -144,6 +144,8 @@ int render_command(const RenderOptions& given) {
 
     RenderStatus status;
     status.passes_goal = options.passes, status.seconds_goal = options.seconds, status.error_goal = options.error;
+    status.passes_before = renderer.passes();
+    const uint64_t rays_before = renderer.counters().rays + renderer.counters().shadow_rays;
     const auto render_start = Clock::now();
     double next_checkpoint = checkpoint_seconds, next_estimate = 0;
     bool done = options.passes && renderer.passes() >= *options.passes;
@@ -155,7 +157,7 @@ int render_command(const RenderOptions& given) {
         renderer.render_passes(count);
         status.passes = renderer.passes();
         status.seconds = seconds_since(render_start);
-        status.rays = double(renderer.counters().rays + renderer.counters().shadow_rays);
+        status.rays = double(renderer.counters().rays + renderer.counters().shadow_rays - rays_before);
         // Developing the film costs time: as often as it takes a tenth of the work at most.
         if (options.error && status.seconds >= next_estimate) {
             const auto begin = Clock::now();
