@@ -3,6 +3,8 @@ struct Boundary {
     uint unused;  // a record holds at least one member
 };
 
+Boundary boundary_resolve(Boundary r, SurfaceContext c) { return r; }
+
 Spectrum boundary_eval(Boundary r, SurfaceContext c, vec3 wo, vec3 wi) { return Spectrum(0); }
 float boundary_pdf(Boundary r, SurfaceContext c, vec3 wo, vec3 wi) { return 0.0; }
 
@@ -11,4 +13,4 @@ BsdfSample boundary_sample(Boundary r, SurfaceContext c, vec3 wo, vec3 u) {
 }
 
 Spectrum boundary_transparency(Boundary r, SurfaceContext c, vec3 wo) { return Spectrum(1); }
-bool boundary_is_delta(Boundary r, SurfaceContext c) { return true; }
+bool boundary_is_delta(Boundary r) { return true; }

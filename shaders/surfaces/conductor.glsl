@@ -17,6 +17,8 @@ struct Conductor {
     bool multiscatter;        //: false. Keeps the light that is reflected more than once between facets.
 };
 
+Conductor conductor_resolve(Conductor r, SurfaceContext c) { return r; }
+
 Spectrum conductor_fresnel(Conductor r, SurfaceContext c, float side, float cos_o) {
     Spectrum reflectance = spectrum_value(r.reflectance);
     float inv_ior = 1.0 / (side < 0.0 ? c.ior_below : c.ior_above);
@@ -81,4 +83,4 @@ BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {
 }
 
 Spectrum conductor_transparency(Conductor r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
-bool conductor_is_delta(Conductor r, SurfaceContext c) { return r.alpha < SMOOTH_ALPHA; }
+bool conductor_is_delta(Conductor r) { return r.alpha < SMOOTH_ALPHA; }

@@ -13,7 +13,9 @@ struct Dielectric {
     bool multiscatter;  //: false. Keeps the light that meets more than one facet.
 };
 
-bool dielectric_is_delta(Dielectric r, SurfaceContext c) {
+Dielectric dielectric_resolve(Dielectric r, SurfaceContext c) { return r; }
+
+bool dielectric_is_delta(Dielectric r) {
     return interface_is_smooth(r.alpha, c.ior_above, c.ior_below);
 }
 

@@ -4,12 +4,13 @@ struct Lambertian {
     TextureRef reflectance_texture;  //: none. Multiplies the reflectance.
 };
 
-Spectrum lambertian_reflectance(Lambertian r, SurfaceContext c) {
-    return spectrum_value(r.reflectance) * texture_value(r.reflectance_texture, c.uv0, c.uv1).rgb;
+Lambertian lambertian_resolve(Lambertian r, SurfaceContext c) {
+    scale_spectrum(r.reflectance, texture_value(r.reflectance_texture, c.uv0, c.uv1).rgb);
+    return r;
 }
 
 Spectrum lambertian_eval(Lambertian r, SurfaceContext c, vec3 wo, vec3 wi) {
-    return wo.z * wi.z > 0.0 ? lambertian_reflectance(r, c) * (INV_PI * abs(wi.z)) : Spectrum(0);
+    return wo.z * wi.z > 0.0 ? spectrum_value(r.reflectance) * (INV_PI * abs(wi.z)) : Spectrum(0);
 }
 
 float lambertian_pdf(Lambertian r, SurfaceContext c, vec3 wo, vec3 wi) {
@@ -19,9 +20,10 @@ float lambertian_pdf(Lambertian r, SurfaceContext c, vec3 wo, vec3 wi) {
 BsdfSample lambertian_sample(Lambertian r, SurfaceContext c, vec3 wo, vec3 u) {
     vec3 wi = warp_cosine_hemisphere(u.xy);
     float pdf = INV_PI * wi.z;
+    if (pdf <= 0.0) return no_bsdf_sample();
     if (wo.z < 0.0) wi.z = -wi.z;
-    return BsdfSample(wi, lambertian_reflectance(r, c), pdf, EVENT_REFLECT);
+    return BsdfSample(wi, spectrum_value(r.reflectance), pdf, EVENT_REFLECT);
 }
 
 Spectrum lambertian_transparency(Lambertian r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
-bool lambertian_is_delta(Lambertian r, SurfaceContext c) { return false; }
+bool lambertian_is_delta(Lambertian r) { return false; }

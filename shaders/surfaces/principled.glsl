@@ -27,7 +27,16 @@ struct Principled {
     bool thin;                              //: false. Transmission does not refract.
 };
 
-// The material at a point, textures read.
+Principled principled_resolve(Principled r, SurfaceContext c) {
+    r.base_color *= c.color * texture_value(r.base_color_texture, c.uv0, c.uv1);
+    vec4 metallic_roughness = texture_value(r.metallic_roughness_texture, c.uv0, c.uv1);
+    r.metallic *= metallic_roughness.b;
+    r.roughness *= metallic_roughness.g;
+    r.transmission *= texture_value(r.transmission_texture, c.uv0, c.uv1).r;
+    return r;
+}
+
+// The material at a point.
 struct PrincipledMaterial {
     float coverage;     // 1 - part that passes unscattered because of alpha
     Spectrum color;
@@ -44,18 +53,15 @@ struct PrincipledMaterial {
 
 PrincipledMaterial principled_material(Principled r, SurfaceContext c, float side) {
     PrincipledMaterial m;
-    vec4 base = r.base_color * c.color * texture_value(r.base_color_texture, c.uv0, c.uv1);
-    vec4 metallic_roughness = texture_value(r.metallic_roughness_texture, c.uv0, c.uv1);
-    vec4 transmission = texture_value(r.transmission_texture, c.uv0, c.uv1);
-    float alpha = clamp(base.a, 0.0, 1.0);
+    float alpha = clamp(r.base_color.a, 0.0, 1.0);
     m.coverage = r.alpha_mode == 0u ? 1.0 : r.alpha_mode == 1u ? (alpha < r.alpha_cutoff ? 0.0 : 1.0) : alpha;
-    m.color = clamp(base.rgb, Spectrum(0), Spectrum(1));
-    m.metal = clamp(r.metallic * metallic_roughness.b, 0.0, 1.0);
-    m.transmitter = (1.0 - m.metal) * clamp(r.transmission * transmission.r, 0.0, 1.0);
+    m.color = clamp(r.base_color.rgb, Spectrum(0), Spectrum(1));
+    m.metal = clamp(r.metallic, 0.0, 1.0);
+    m.transmitter = (1.0 - m.metal) * clamp(r.transmission, 0.0, 1.0);
     m.opaque = max((1.0 - m.metal) - m.transmitter, 0.0);
     m.thin = r.thin;
     m.f0 = square((r.ior - 1.0) / (r.ior + 1.0));
-    m.alpha = square(clamp(r.roughness * metallic_roughness.g, 0.0, 1.0));
+    m.alpha = square(clamp(r.roughness, 0.0, 1.0));
     m.smooth_facets = m.alpha < SMOOTH_ALPHA || (!m.thin && m.transmitter > 0.0 &&
                                                  interface_is_smooth(m.alpha, c.ior_above, c.ior_below));
     m.eta = side < 0.0 ? c.ior_above / c.ior_below : c.ior_below / c.ior_above;
@@ -215,7 +221,8 @@ Spectrum principled_transparency(Principled r, SurfaceContext c, vec3 wo) {
     return principled_choice(principled_material(r, c, wo.z < 0.0 ? -1.0 : 1.0), abs(wo.z)).straight;
 }
 
-bool principled_is_delta(Principled r, SurfaceContext c) {
-    PrincipledMaterial m = principled_material(r, c, 1.0);
-    return m.coverage == 0.0 || (m.smooth_facets && m.opaque == 0.0);
+bool principled_is_delta(Principled r) {
+    bool never_opaque = r.metallic_roughness_texture.index == NO_RECORD && r.transmission_texture.index == NO_RECORD &&
+                        (r.metallic >= 1.0 || r.transmission >= 1.0);
+    return square(clamp(r.roughness, 0.0, 1.0)) < SMOOTH_ALPHA && never_opaque;
 }

@@ -7,6 +7,8 @@ struct ThinDielectric {
     float ior;  //: 1.5 in (0, inf). Refractive index of the pane.
 };
 
+ThinDielectric thin_dielectric_resolve(ThinDielectric r, SurfaceContext c) { return r; }
+
 float thin_dielectric_reflectance(ThinDielectric r, SurfaceContext c, vec3 wo) {
     float f = fresnel_dielectric(wo.z, r.ior / (wo.z < 0.0 ? c.ior_below : c.ior_above));
     return 2.0 * f / (1.0 + f);
@@ -26,4 +28,4 @@ Spectrum thin_dielectric_transparency(ThinDielectric r, SurfaceContext c, vec3 w
     return Spectrum(1.0 - thin_dielectric_reflectance(r, c, wo));
 }
 
-bool thin_dielectric_is_delta(ThinDielectric r, SurfaceContext c) { return true; }
+bool thin_dielectric_is_delta(ThinDielectric r) { return true; }
