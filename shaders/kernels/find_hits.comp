@@ -28,21 +28,30 @@ layout(push_constant, scalar) uniform Push { uint ray_count; };
 #define QUEUED_RAY(i) i
 #endif
 
+void store_hit(uint ray, Hit hit) {
+    hits[ray] = vec4(hit.t, hit.uv, uintBitsToFloat(hit.primitive));
+#if HAS_INSTANCES
+    hit_instances[ray] = hit.instance;
+#endif
+}
+
 void main() {
     uint count = RAY_COUNT;
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint next = gl_GlobalInvocationID.x;
+#if HAS_UNROLLED_TRAVERSAL
+    for (; next < count; next += stride) {
+        uint ray = QUEUED_RAY(next);
+        vec4 direction = ray_directions[ray];
+        store_hit(ray, find_hit(ray_origins[ray].xyz, direction.xyz, direction.w));
+    }
+#else
     uint ray = NO_RECORD;
     Traversal walk;
     walk.node = BVH_NOTHING;
     for (;;) {
         if (walk.node == BVH_NOTHING) {
-            if (ray != NO_RECORD) {
-                hits[ray] = vec4(walk.hit.t, walk.hit.uv, uintBitsToFloat(walk.hit.primitive));
-#if HAS_INSTANCES
-                hit_instances[ray] = walk.hit.instance;
-#endif
-            }
+            if (ray != NO_RECORD) store_hit(ray, walk.hit);
             if (next >= count) break;
             ray = QUEUED_RAY(next);
             next += stride;
@@ -51,4 +60,5 @@ void main() {
         }
         traversal_step(walk, ANY_HIT == 1);
     }
+#endif
 }

@@ -11,7 +11,7 @@ void main() {
     uint next = gl_GlobalInvocationID.x;
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     Counters counters = no_counters();
-#if HAS_STRAIGHT || HAS_MEDIA
+#if HAS_STRAIGHT || HAS_MEDIA || HAS_UNROLLED_TRAVERSAL
     for (; next < count; next += stride) {
         ShadowState s = shadow_rays[next];
         path_states[s.slot].radiance += trace_shadow(ShadowRay(s.origin, s.direction, s.t_max, s.contribution, s.medium), counters);

@@ -22,6 +22,11 @@ struct Hit {
     uint instance;   // entry of `primitives` of the instance that holds it; NO_RECORD = none
 };
 
+// Scenes of few primitives come as straight code (host/scene/unrolled_traversal.h).
+#if HAS_UNROLLED_TRAVERSAL
+#include "generated/unrolled_traversal.glsl"
+#else
+
 struct Traversal {
     vec3 origin, direction;  // in the frame being walked
     RayShear shear;
@@ -145,3 +150,4 @@ bool find_occlusion(vec3 origin, vec3 direction, float t_max) {
     while (w.node != BVH_NOTHING) traversal_step(w, true);
     return w.hit.primitive != NO_RECORD;
 }
+#endif

@@ -1,5 +1,5 @@
-// Every registered geometry class, on the device: its area and its sampler against random lines through it, sampling
-// towards a point against its pdf, intersections against double precision, bounds, error bounds.
+// Every registered geometry class, on the device: its area and its sampler against random lines through it,
+// sampling towards a point against its pdf, intersections against double precision, bounds, error bounds.
 #include <doctest/doctest.h>
 #include <cmath>
 #include <functional>
@@ -50,7 +50,8 @@ const std::map<std::string, Oracle>& oracles() {
               return {t};
           },
           [](V p) {
-              return glm::dot(glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0])), p - corner[0]);
+              return glm::dot(glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0])),
+                              p - corner[0]);
           },
           {{-0.7f, -0.4f, -0.5f}, {0.9f, 0.8f, 0.6f}}}},
         {"sphere",
@@ -80,7 +81,8 @@ const std::map<std::string, Oracle>& oracles() {
          {{{"radius", 0.5}, {"height", 1.4}},
           [](V o, V d) -> Ts {
               Ts result;
-              for (double t : quadratic(d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y, o.x * o.x + o.y * o.y - 0.25))
+              for (double t :
+                   quadratic(d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y, o.x * o.x + o.y * o.y - 0.25))
                   if (std::abs(o.z + t * d.z) <= 0.7) result.push_back(t);
               return result;
           },
@@ -92,7 +94,8 @@ const std::map<std::string, Oracle>& oracles() {
 
 std::vector<std::string> registered() {
     std::vector<std::string> names;
-    for (const ClassInfo& info : ClassRegistry(test_sources()).classes(Interface::geometry)) names.push_back(info.name);
+    for (const ClassInfo& info : ClassRegistry(test_sources()).classes(Interface::geometry))
+        names.push_back(info.name);
     return names;
 }
 
@@ -172,7 +175,8 @@ class ClassProbe {
             std::memcpy(record.data(), &triangle, sizeof triangle);
         } else {
             const SceneDescription scene;
-            record = fill_record(*info, {name, oracles().at(name).parameters, "/geometry"}, {}, {scene, {}, {}, {}});
+            record = fill_record(*info, {name, oracles().at(name).parameters, "/geometry"}, {},
+                                 {scene, {}, {}, {}});
         }
         RecordBuffer records;
         records.add(*info, record);
@@ -189,19 +193,26 @@ class ClassProbe {
         bounds = {{numbers[1], numbers[2], numbers[3]}, {numbers[4], numbers[5], numbers[6]}};
     }
 
-    std::vector<Sample> sample(const std::vector<glm::vec2>& u, std::optional<glm::vec3> towards = {}, glm::vec3 reference = glm::vec3(0)) {
+    std::vector<Sample> sample(const std::vector<glm::vec2>& u, std::optional<glm::vec3> towards = {},
+                               glm::vec3 reference = glm::vec3(0)) {
         if (towards) reference = *towards;
         const Buffer in = create_buffer(test_device(), u, "uniforms");
         const Buffer out(test_device(), u.size() * sizeof(Sample), "samples");
         run(sample_, {{"Uniforms", &in}, {"Samples", &out}}, uint32_t(u.size()),
-            {{"count", uint32_t(u.size())}, {"ref", ref_}, {"towards", uint32_t(towards.has_value())}, {"x", reference.x}, {"y", reference.y}, {"z", reference.z}});
+            {{"count", uint32_t(u.size())},
+             {"ref", ref_},
+             {"towards", uint32_t(towards.has_value())},
+             {"x", reference.x},
+             {"y", reference.y},
+             {"z", reference.z}});
         return out.read_array<Sample>(u.size());
     }
 
     std::vector<Meeting> meet(const std::vector<ProbeRay>& rays) {
         const Buffer in = create_buffer(test_device(), rays, "rays");
         const Buffer out(test_device(), rays.size() * sizeof(Meeting), "meetings");
-        run(meet_, {{"Rays", &in}, {"Meetings", &out}}, uint32_t(rays.size()), {{"count", uint32_t(rays.size())}, {"ref", ref_}});
+        run(meet_, {{"Rays", &in}, {"Meetings", &out}}, uint32_t(rays.size()),
+            {{"count", uint32_t(rays.size())}, {"ref", ref_}});
         return out.read_array<Meeting>(rays.size());
     }
 
@@ -214,7 +225,8 @@ class ClassProbe {
         sources.generated[name] = text;
         return compile_shader(sources, name);
     }
-    void run(const CompiledShader& shader, BufferTable buffers, uint32_t count, std::initializer_list<PushValue> values) {
+    void run(const CompiledShader& shader, BufferTable buffers, uint32_t count,
+             std::initializer_list<PushValue> values) {
         buffers[interface_info(Interface::geometry).buffer] = &records_;
         const Kernel kernel(test_device(), shader, buffers);
         CommandList list(test_device());
@@ -248,7 +260,8 @@ std::vector<glm::vec2> uniform_points(size_t n, uint32_t seed) {
 std::vector<glm::vec2> grid_points(int n) {
     std::vector<glm::vec2> u;
     for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) u.emplace_back((float(i) + 0.5f) / float(n), (float(j) + 0.5f) / float(n));
+        for (int j = 0; j < n; j++)
+            u.emplace_back((float(i) + 0.5f) / float(n), (float(j) + 0.5f) / float(n));
     return u;
 }
 
@@ -271,7 +284,8 @@ std::vector<ProbeRay> random_lines(const Box& bounds, size_t count, float& radiu
     std::vector<ProbeRay> rays(count);
     for (ProbeRay& r : rays) {
         const glm::vec3 d = random.direction();
-        const glm::vec3 a = glm::normalize(glm::cross(d, std::abs(d.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
+        const glm::vec3 a =
+            glm::normalize(glm::cross(d, std::abs(d.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
         const glm::vec3 b = glm::cross(d, a);
         const float rho = radius * std::sqrt(random(0, 1)), phi = random(0, 6.2831853f);
         r = {center + rho * (std::cos(phi) * a + std::sin(phi) * b) - 2 * radius * d, 1e30f, d};
@@ -302,14 +316,19 @@ TEST_CASE("area and uniform sampling agree with random lines through the surface
         std::vector<Meeting> meetings = probe.meet(rays);
         for (int crossing = 0; crossing < 2; crossing++) {
             for (size_t i = 0; i < n; i++) {
-                if (!meetings[i].met) { rays[i].origin = glm::vec3(1e6f); continue; }
-                if (glm::dot(meetings[i].normal, rays[i].direction) < 0) entered++, by_lines[cell_of(probe.bounds, meetings[i].position)]++;
+                if (!meetings[i].met) {
+                    rays[i].origin = glm::vec3(1e6f);
+                    continue;
+                }
+                if (glm::dot(meetings[i].normal, rays[i].direction) < 0)
+                    entered++, by_lines[cell_of(probe.bounds, meetings[i].position)]++;
                 rays[i].origin = meetings[i].position + 1e-4f * radius * rays[i].direction;
             }
             if (crossing == 0) meetings = probe.meet(rays);
         }
         const double p = entered / n, area = p * 4 * M_PI * radius * radius;
-        CHECK(z_test(area, probe.area, std::sqrt(p * (1 - p) / n) * 4 * M_PI * radius * radius, 1e-4 * area) > sidak_level(0.001, 3 * names.size()));
+        CHECK(z_test(area, probe.area, std::sqrt(p * (1 - p) / n) * 4 * M_PI * radius * radius, 1e-4 * area) >
+              sidak_level(0.001, 3 * names.size()));
 
         const std::vector<Sample> samples = probe.sample(uniform_points(n, 2));
         size_t wrong_pdf = 0, outside = 0, not_unit = 0;
@@ -319,7 +338,8 @@ TEST_CASE("area and uniform sampling agree with random lines through the surface
             wrong_pdf += !(std::abs(s.pdf * probe.area - 1) < 1e-4f);
             not_unit += !(std::abs(glm::length(s.normal) - 1) < 1e-5f);
             const glm::vec3 slack = 1e-6f * glm::abs(s.position);
-            outside += glm::any(glm::lessThan(s.position, probe.bounds.lo - slack)) || glm::any(glm::greaterThan(s.position, probe.bounds.hi + slack));
+            outside += glm::any(glm::lessThan(s.position, probe.bounds.lo - slack)) ||
+                       glm::any(glm::greaterThan(s.position, probe.bounds.hi + slack));
             reached.grow(s.position);
         }
         CHECK(wrong_pdf == 0);
@@ -341,7 +361,8 @@ TEST_CASE("area and uniform sampling agree with random lines through the surface
 }
 
 TEST_CASE("sampling towards a point has the pdf that it says") {
-    const glm::vec3 references[] = {{2, 1, 3}, {0.9f, 0.4f, 0.6f}, {0.1f, -0.2f, 0.15f}, {-30, 10, 5}, {0, 0, 4}, {0.2f, 2, 0.01f}, {3000, -5000, 2000}};
+    const glm::vec3 references[] = {{2, 1, 3}, {0.9f, 0.4f, 0.6f}, {0.1f, -0.2f, 0.15f}, {-30, 10, 5},
+                                    {0, 0, 4}, {0.2f, 2, 0.01f},   {3000, -5000, 2000}};
     const std::vector<std::string> names = registered();
     for (const std::string& name : names) {
         CAPTURE(name);
@@ -380,7 +401,8 @@ TEST_CASE("a small or far sphere is sampled over the half that is seen") {
         const glm::vec3 reference = glm::normalize(glm::vec3(0.3f, -0.5f, 0.8f)) * (0.8f * distance);
         const std::vector<Sample> samples = probe.sample(uniform_points(20000, 4), reference);
         size_t unseen = 0, wrong = 0;
-        const double sine = 1.0 / distance, solid_angle = 2 * M_PI * sine * sine / (1 + std::sqrt(1 - sine * sine));
+        const double sine = 1.0 / distance,
+                     solid_angle = 2 * M_PI * sine * sine / (1 + std::sqrt(1 - sine * sine));
         for (const Sample& s : samples) {
             const glm::dvec3 d = glm::dvec3(reference) - glm::dvec3(s.position);
             const double l = glm::length(d), cosine = glm::dot(d, glm::dvec3(s.normal)) / l;
@@ -402,7 +424,8 @@ TEST_CASE("intersections agree with double precision") {
         std::vector<ProbeRay> rays(100000);
         for (size_t i = 0; i < rays.size(); i++) {
             const float away = i % 3 == 0 ? 1.0f : i % 3 == 1 ? 3.0f : 1000.0f;
-            const glm::vec3 origin = random.direction() * (away * random(0.2f, 1)), target = random.direction() * random(0, 0.9f);
+            const glm::vec3 origin = random.direction() * (away * random(0.2f, 1)),
+                            target = random.direction() * random(0, 0.9f);
             rays[i] = {origin, 1e30f, i % 2 ? target - origin : glm::normalize(target - origin)};
         }
         const std::vector<Meeting> meetings = probe.meet(rays);
@@ -422,11 +445,14 @@ TEST_CASE("intersections agree with double precision") {
                 double t_beside = 1e30;
                 for (const double t : oracle.crossings(beside, d))
                     if (t > 0) t_beside = std::min(t_beside, t);
-                clear = (t_beside < 1e30) == exact && (!exact || std::abs(t_beside - nearest) * glm::length(d) < 50 * tolerance);
+                clear = (t_beside < 1e30) == exact &&
+                        (!exact || std::abs(t_beside - nearest) * glm::length(d) < 50 * tolerance);
             }
             if (!clear) continue;
             hits += met;
-            if (met != exact || (met && !(std::abs(meetings[i].t - nearest) * glm::length(d) < 20 * tolerance))) wrong++;
+            if (met != exact ||
+                (met && !(std::abs(meetings[i].t - nearest) * glm::length(d) < 20 * tolerance)))
+                wrong++;
             if (met) {
                 const double bound = glm::dot(glm::abs(meetings[i].normal), meetings[i].error);
                 off += !(std::abs(oracle.distance(meetings[i].position)) <= bound + 1e-30);
@@ -447,9 +473,11 @@ TEST_CASE("placed surfaces: error bounds hold and rays that leave do not hit aga
             CAPTURE(placement);
             glm::dmat4 m(1);
             if (placement == 1) m = glm::translate(m, glm::dvec3(20, -30, 10));
-            if (placement == 2) m = glm::scale(glm::translate(m, glm::dvec3(3, 2, 1)), glm::dvec3(2, 0.5, -1));
+            if (placement == 2)
+                m = glm::scale(glm::translate(m, glm::dvec3(3, 2, 1)), glm::dvec3(2, 0.5, -1));
             if (placement == 3) m = glm::scale(glm::dmat4(1), glm::dvec3(1e-3));
-            if (placement == 4) m = glm::scale(glm::translate(m, glm::dvec3(3e4, 2e4, -1e4)), glm::dvec3(1e4));
+            if (placement == 4)
+                m = glm::scale(glm::translate(m, glm::dvec3(3e4, 2e4, -1e4)), glm::dvec3(1e4));
             m = glm::rotate(m, 1.1, glm::normalize(glm::dvec3(1, -2, 3)));
             GeometryProbe probe;
             probe.add_shape(name, oracle.parameters, oracle.bounds, m);
@@ -457,7 +485,8 @@ TEST_CASE("placed surfaces: error bounds hold and rays that leave do not hit aga
             Random random(12);
             std::vector<ProbeRay> rays(20000);
             for (ProbeRay& r : rays) {
-                const glm::dvec3 a = glm::dvec3(random.direction()) * 3.0, b = glm::dvec3(random.direction()) * double(random(0, 0.7f));
+                const glm::dvec3 a = glm::dvec3(random.direction()) * 3.0,
+                                 b = glm::dvec3(random.direction()) * double(random(0, 0.7f));
                 const glm::vec3 origin(m * glm::dvec4(a, 1)), target(m * glm::dvec4(b, 1));
                 r = {origin, 1e30f, glm::normalize(target - origin)};
             }
@@ -472,8 +501,10 @@ TEST_CASE("placed surfaces: error bounds hold and rays that leave do not hit aga
                 // The step along the world normal that leads back to the surface.
                 const double step = 1e-6 * glm::length(glm::dvec3(m[0]));
                 const glm::dvec3 local_step(inverse * glm::dvec4(n * step, 0));
-                const double slope = (oracle.distance(local + local_step) - oracle.distance(local - local_step)) / (2 * step);
-                const double distance = oracle.distance(local) / slope, bound = glm::dot(glm::abs(t.geometric_normal), t.error);
+                const double slope =
+                    (oracle.distance(local + local_step) - oracle.distance(local - local_step)) / (2 * step);
+                const double distance = oracle.distance(local) / slope,
+                             bound = glm::dot(glm::abs(t.geometric_normal), t.error);
                 off += !(std::abs(distance) <= bound);
                 // Leaving from the outside, from steep to grazing.
                 const glm::vec3 direction = random.direction();
@@ -482,7 +513,8 @@ TEST_CASE("placed surfaces: error bounds hold and rays that leave do not hit aga
                 ProbeRay r{{}, 1e30f, glm::normalize(along + std::pow(10.0f, random(-6, 1)) * normal)};
                 const glm::vec3 offset = glm::dot(glm::abs(normal), t.error) * normal;
                 for (int axis = 0; axis < 3; axis++)
-                    r.origin[axis] = std::nextafter(t.position[axis] + offset[axis], offset[axis] > 0 ? 1e30f : -1e30f);
+                    r.origin[axis] =
+                        std::nextafter(t.position[axis] + offset[axis], offset[axis] > 0 ? 1e30f : -1e30f);
                 away.push_back(r);
             }
             CHECK(hits > 1000);

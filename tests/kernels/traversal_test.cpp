@@ -25,12 +25,13 @@ struct Random {
     glm::dmat4 placement(double size) {
         glm::dmat4 m = glm::translate(glm::dmat4(1), glm::dvec3(point(float(size))));
         m = glm::rotate(m, double((*this)(0, 6)), glm::dvec3(direction()));
-        return glm::scale(m, glm::dvec3((*this)(0.3f, 1.5f), (*this)(0.3f, 1.5f), (*this)(-1.5f, -0.3f)));  // mirrors
+        return glm::scale(
+            m, glm::dvec3((*this)(0.3f, 1.5f), (*this)(0.3f, 1.5f), (*this)(-1.5f, -0.3f)));  // mirrors
     }
 };
 
-// Rays of all kinds around a scene of the given size: anywhere, along axes and planes, of any length, starting on
-// vertices, from far away.
+// Rays of all kinds around a scene of the given size: anywhere, along axes and planes, of any length,
+// starting on vertices, from far away.
 std::vector<ProbeRay> many_rays(size_t count, float size, const std::vector<glm::vec3>& vertices = {}) {
     Random random(11);
     std::vector<ProbeRay> rays;
@@ -61,8 +62,8 @@ size_t disagreements(const std::vector<ProbeTrace>& traces, const std::vector<Pr
         agree = agree && (t.occluded != 0) == (t.expected.primitive != no_record);
         hits += t.expected.primitive != no_record;
         if (!agree && wrong++ < 3)
-            MESSAGE("ray ", i, ": t ", t.hit.t, " of ", t.hit.primitive, ", brute force ", t.expected.t, " of ",
-                    t.expected.primitive, ", occluded ", t.occluded, ", t_max ", rays[i].t_max);
+            MESSAGE("ray ", i, ": t ", t.hit.t, " of ", t.hit.primitive, ", brute force ", t.expected.t,
+                    " of ", t.expected.primitive, ", occluded ", t.occluded, ", t_max ", rays[i].t_max);
     }
     CHECK(hits > traces.size() / 50);
     return wrong;
@@ -79,7 +80,8 @@ std::vector<glm::vec3> random_triangles(size_t count, float size, float triangle
 }
 
 void add_triangles(GeometryProbe& probe, const std::vector<glm::vec3>& vertices) {
-    for (size_t i = 0; i < vertices.size(); i += 3) probe.add_triangle(vertices[i], vertices[i + 1], vertices[i + 2]);
+    for (size_t i = 0; i < vertices.size(); i += 3)
+        probe.add_triangle(vertices[i], vertices[i + 1], vertices[i + 2]);
 }
 
 }  // namespace
@@ -111,8 +113,11 @@ TEST_CASE("triangles in few planes, with shared edges along the axes, are found 
     for (int plane = 0; plane < 4; plane++)
         for (int i = 0; i < 12; i++)
             for (int j = 0; j < 12; j++) {
-                const auto p = [&](int u, int v) { return glm::vec3(u / 6.0f - 1, plane / 2.0f - 0.75f, v / 6.0f - 1); };
-                for (const glm::vec3& v : {p(i, j), p(i + 1, j), p(i + 1, j + 1), p(i, j), p(i + 1, j + 1), p(i, j + 1)})
+                const auto p = [&](int u, int v) {
+                    return glm::vec3(u / 6.0f - 1, plane / 2.0f - 0.75f, v / 6.0f - 1);
+                };
+                for (const glm::vec3& v :
+                     {p(i, j), p(i + 1, j), p(i + 1, j + 1), p(i, j), p(i + 1, j + 1), p(i, j + 1)})
                     vertices.push_back(v);
             }
     add_triangles(probe, vertices);
@@ -154,7 +159,8 @@ TEST_CASE("shapes, triangles and instances in one hierarchy are found as by brut
         const std::vector<glm::vec4> hits = probe.find_hits(rays, &instances);
         size_t different = 0;
         for (size_t i = 0; i < rays.size(); i++)
-            different += hits[i].x != traces[i].hit.t || std::bit_cast<uint32_t>(hits[i].w) != traces[i].hit.primitive ||
+            different += hits[i].x != traces[i].hit.t ||
+                         std::bit_cast<uint32_t>(hits[i].w) != traces[i].hit.primitive ||
                          instances[i] != traces[i].hit.instance;
         CHECK(different == 0);
     }
@@ -172,7 +178,9 @@ TEST_CASE("rays that are not numbers end without a hit") {
     add_triangles(probe, icosphere(2, 1));
     probe.build();
     const float nan = std::nanf("");
-    for (const ProbeTrace& t : probe.trace({{{nan, 0, 0}, 1e30f, {0, 0, 1}}, {{0, 0, 0}, 1e30f, {nan, nan, nan}}, {{0, 0, 0}, 1e30f, {0, 0, 0}}}))
+    for (const ProbeTrace& t : probe.trace({{{nan, 0, 0}, 1e30f, {0, 0, 1}},
+                                            {{0, 0, 0}, 1e30f, {nan, nan, nan}},
+                                            {{0, 0, 0}, 1e30f, {0, 0, 0}}}))
         CHECK(t.hit.primitive == no_record);
 }
 
@@ -185,7 +193,8 @@ TEST_CASE("no ray leaves a closed mesh, not even through its edges and vertices"
     // Bumps make it concave; every copy of a corner is displaced alike.
     std::vector<glm::vec3> vertices;
     for (const glm::vec3& v : sphere)
-        vertices.push_back(v * (1 + 0.2f * std::sin(9 * v.x) * std::sin(8 * v.y + 1) * std::sin(7 * v.z)) + glm::vec3(3, -2, 5));
+        vertices.push_back(v * (1 + 0.2f * std::sin(9 * v.x) * std::sin(8 * v.y + 1) * std::sin(7 * v.z)) +
+                           glm::vec3(3, -2, 5));
     GeometryProbe probe;
     add_triangles(probe, vertices);
     probe.build();
@@ -197,12 +206,18 @@ TEST_CASE("no ray leaves a closed mesh, not even through its edges and vertices"
             const size_t triangle = random.engine() % (vertices.size() / 3);
             const glm::vec3 a = vertices[3 * triangle], c = vertices[3 * triangle + 1];
             switch (random.engine() % 3) {
-                case 1: r.direction = a - r.origin; break;
-                case 2: r.direction = glm::mix(a, c, random(0, 1)) - r.origin; break;
-                default: break;
+                case 1:
+                    r.direction = a - r.origin;
+                    break;
+                case 2:
+                    r.direction = glm::mix(a, c, random(0, 1)) - r.origin;
+                    break;
+                default:
+                    break;
             }
         }
-        for (const glm::vec4& hit : probe.find_hits(rays)) leaks += std::bit_cast<uint32_t>(hit.w) == no_record;
+        for (const glm::vec4& hit : probe.find_hits(rays))
+            leaks += std::bit_cast<uint32_t>(hit.w) == no_record;
     }
     CHECK(leaks == 0);
 }
@@ -249,9 +264,12 @@ TEST_CASE("a ray that grazes away from a plane of many triangles does not hit it
         for (int tilt = 0; tilt < 3; tilt++) {
             CAPTURE(scale);
             CAPTURE(tilt);
-            glm::dmat4 m = glm::translate(glm::dmat4(1), glm::dvec3(scale) * glm::dvec3(0.3, -0.7, 0.2) * double(tilt));
+            glm::dmat4 m =
+                glm::translate(glm::dmat4(1), glm::dvec3(scale) * glm::dvec3(0.3, -0.7, 0.2) * double(tilt));
             m = glm::rotate(m, 0.7 * tilt, glm::normalize(glm::dvec3(1, 2, 3)));
-            const auto p = [&](int i, int j) { return glm::vec3(m * glm::dvec4(scale * i / 8.0 - scale, 0, scale * j / 8.0 - scale, 1)); };
+            const auto p = [&](int i, int j) {
+                return glm::vec3(m * glm::dvec4(scale * i / 8.0 - scale, 0, scale * j / 8.0 - scale, 1));
+            };
             GeometryProbe probe;
             for (int i = 0; i < 16; i++)
                 for (int j = 0; j < 16; j++) {
@@ -263,7 +281,8 @@ TEST_CASE("a ray that grazes away from a plane of many triangles does not hit it
             Random random(6);
             std::vector<ProbeRay> rays(20000);
             for (ProbeRay& r : rays) {
-                const glm::vec3 target = glm::vec3(m * glm::dvec4(scale * random(-0.9f, 0.9f), 0, scale * random(-0.9f, 0.9f), 1));
+                const glm::vec3 target =
+                    glm::vec3(m * glm::dvec4(scale * random(-0.9f, 0.9f), 0, scale * random(-0.9f, 0.9f), 1));
                 r.direction = -random.direction();
                 if (glm::dot(r.direction, up) > 0) r.direction = -r.direction;
                 r.origin = target - scale * r.direction;
@@ -282,7 +301,8 @@ TEST_CASE("a ray that grazes away from a plane of many triangles does not hit it
                 const float offset = glm::dot(glm::abs(n), hits[i].error);
                 for (int axis = 0; axis < 3; axis++) {
                     const float moved = hits[i].position[axis] + offset * n[axis];
-                    away.back().origin[axis] = offset * n[axis] == 0 ? moved : std::nextafter(moved, n[axis] > 0 ? 1e30f : -1e30f);
+                    away.back().origin[axis] =
+                        offset * n[axis] == 0 ? moved : std::nextafter(moved, n[axis] > 0 ? 1e30f : -1e30f);
                 }
             }
             CHECK(away.size() > 15000);

@@ -10,7 +10,8 @@
 namespace etendue {
 namespace {
 
-// The brute force knows an instance's triangles from words that traversal does not read: v1.x first, v1.y count.
+// The brute force knows an instance's triangles from words that traversal does not read: v1.x first, v1.y
+// count.
 const char* const trace_kernel = R"(
     #include "lib/primitives.glsl"
     layout(local_size_x = 64) in;
@@ -110,12 +111,12 @@ void GeometryProbe::place(const glm::dmat4& world_from_local, PrimitiveKind kind
     instance_meshes_.push_back(0);
 }
 
-void GeometryProbe::add_shape(const std::string& class_name, const nlohmann::json& parameters, const Box& local,
-                              const glm::dmat4& world_from_local) {
+void GeometryProbe::add_shape(const std::string& class_name, const nlohmann::json& parameters,
+                              const Box& local, const glm::dmat4& world_from_local) {
     const ClassInfo* info = registry_.find(Interface::geometry, class_name);
     REQUIRE(info);
-    static const SceneDescription scene;
-    const RecordResolver resolver{scene, {}, {}, {}};
+    const RecordResolver resolver{scene_, {}, {}, {}};
+    scene_.shapes.push_back({class_name, {class_name, parameters, "/geometry"}, world_from_local, 0});
     place(world_from_local, PrimitiveKind::shape, local);
     shapes_.back() = {info, records_.count(*info)};
     records_.add(*info, fill_record(*info, {class_name, parameters, "/geometry"}, {}, resolver));
@@ -175,12 +176,24 @@ void GeometryProbe::build(NodeFormat format) {
             p.v1.y = std::bit_cast<float>(uint32_t(meshes_[mesh].triangles.size()));
         }
     }
+    for (const Box& box : boxes_) world_.bounds.grow(box);
     nodes_ = create_buffer(test_device(), world_.nodes, "nodes");
     primitives_ = create_buffer(test_device(), world_.primitives, "primitives");
     transforms_ = create_buffer(test_device(), world_.transforms, "transforms");
     geometry_ = create_buffer(test_device(), records_.bytes(), "geometry records");
-    sources_.generated["generated/geometry_classes.glsl"] = class_header(interface_info(Interface::geometry), classes);
-    defines_ = features.defines() + fmt::format("#define HAS_FLOAT_NODES {}\n", int(format == NodeFormat::floats));
+    sources_.generated["generated/geometry_classes.glsl"] =
+        class_header(interface_info(Interface::geometry), classes);
+    defines_ =
+        features.defines() + fmt::format("#define HAS_FLOAT_NODES {}\n", int(format == NodeFormat::floats));
+}
+
+UnrolledTraversal GeometryProbe::unroll() {
+    UnrolledTraversal unrolled = unroll_traversal(world_, scene_);
+    if (unrolled.glsl.empty()) return unrolled;
+    nodes_ = create_buffer(test_device(), world_.nodes, "nodes");
+    sources_.generated["generated/unrolled_traversal.glsl"] = unrolled.glsl;
+    defines_ += "#define HAS_UNROLLED_TRAVERSAL 1\n";
+    return unrolled;
 }
 
 Kernel GeometryProbe::kernel(const std::string& name, const std::string& text, BufferTable buffers,
@@ -203,21 +216,26 @@ std::vector<ProbeTrace> GeometryProbe::trace(const std::vector<ProbeRay>& rays, 
     const Kernel trace = kernel("trace_rays", trace_kernel, {{"Rays", &in}, {"Traces", &out}});
     CommandList list(test_device());
     list.dispatch(trace, (count + 63) / 64,
-                  {{"count", count}, {"world_primitives", world_.world_primitives}, {"brute_force", uint32_t(brute_force)}});
+                  {{"count", count},
+                   {"world_primitives", world_.world_primitives},
+                   {"brute_force", uint32_t(brute_force)}});
     list.run();
     return out.read_array<ProbeTrace>(count);
 }
 
-std::vector<glm::vec4> GeometryProbe::find_hits(const std::vector<ProbeRay>& rays, std::vector<uint32_t>* instances) {
+std::vector<glm::vec4> GeometryProbe::find_hits(const std::vector<ProbeRay>& rays,
+                                                std::vector<uint32_t>* instances) {
     const auto count = uint32_t(rays.size());
     std::vector<glm::vec4> origins, directions;
-    for (const ProbeRay& r : rays) origins.emplace_back(r.origin, 0), directions.emplace_back(r.direction, r.t_max);
+    for (const ProbeRay& r : rays)
+        origins.emplace_back(r.origin, 0), directions.emplace_back(r.direction, r.t_max);
     const Buffer o = create_buffer(test_device(), origins, "ray origins");
     const Buffer d = create_buffer(test_device(), directions, "ray directions");
     const Buffer hits(test_device(), count * sizeof(glm::vec4), "hits");
     const Buffer hit_instances(test_device(), count * sizeof(uint32_t), "hit instances");
-    const Kernel find = kernel("kernels/find_hits.comp", "",
-                               {{"RayOrigins", &o}, {"RayDirections", &d}, {"Hits", &hits}, {"HitInstances", &hit_instances}});
+    const Kernel find = kernel(
+        "kernels/find_hits.comp", "",
+        {{"RayOrigins", &o}, {"RayDirections", &d}, {"Hits", &hits}, {"HitInstances", &hit_instances}});
     CommandList list(test_device());
     list.dispatch(find, std::max(1u, count / 64 / 16), {{"ray_count", count}});
     list.run();
@@ -227,11 +245,12 @@ std::vector<glm::vec4> GeometryProbe::find_hits(const std::vector<ProbeRay>& ray
 
 std::vector<glm::vec3> icosphere(int subdivisions, float radius) {
     const double g = (1 + std::sqrt(5.0)) / 2;
-    const glm::dvec3 p[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                              {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-    const int faces[20][3] = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                              {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                              {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+    const glm::dvec3 p[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                              {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    const int faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                              {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                              {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                              {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
     std::vector<glm::dvec3> corners;
     for (const auto& face : faces)
         for (int k : face) corners.push_back(glm::normalize(p[k]));
@@ -239,7 +258,8 @@ std::vector<glm::vec3> icosphere(int subdivisions, float radius) {
         std::vector<glm::dvec3> finer;
         for (size_t i = 0; i < corners.size(); i += 3) {
             const glm::dvec3 a = corners[i], b = corners[i + 1], c = corners[i + 2];
-            const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c), ca = glm::normalize(c + a);
+            const glm::dvec3 ab = glm::normalize(a + b), bc = glm::normalize(b + c),
+                             ca = glm::normalize(c + a);
             finer.insert(finer.end(), {a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca});
         }
         corners = std::move(finer);

@@ -1,4 +1,5 @@
-// A small world on the device, asked through shaders/lib/traversal.glsl and lib/primitives.glsl, and by brute force.
+// A small world on the device, asked through shaders/lib/traversal.glsl and lib/primitives.glsl, and by brute
+// force.
 #pragma once
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
@@ -6,6 +7,7 @@
 #include "host/scene/bvh.h"
 #include "host/scene/classes.h"
 #include "host/scene/records.h"
+#include "host/scene/unrolled_traversal.h"
 #include "host/scene/world.h"
 #include "tests/support/device_fixture.h"
 
@@ -25,11 +27,11 @@ struct ProbeHit {
 };
 
 struct ProbeTrace {
-    ProbeHit hit;        // by the hierarchy
-    ProbeHit expected;   // by trying every primitive
-    uint32_t occluded;   // by find_occlusion
+    ProbeHit hit;                                                 // by the hierarchy
+    ProbeHit expected;                                            // by trying every primitive
+    uint32_t occluded;                                            // by find_occlusion
     glm::vec3 position, error, geometric_normal, shading_normal;  // of `hit`
-    glm::vec3 onward;    // where a ray that goes straight on leaves the surface
+    glm::vec3 onward;  // where a ray that goes straight on leaves the surface
 };
 
 class GeometryProbe {
@@ -44,14 +46,18 @@ class GeometryProbe {
 
     // Builds the hierarchies and compiles what the world needs.
     void build(NodeFormat format = NodeFormat::quantised);
+    // Puts straight code in the place of the hierarchy (host/scene/unrolled_traversal.h), after build().
+    UnrolledTraversal unroll();
 
     // `brute_force` = false leaves `expected` undefined and takes a fraction of the time.
     std::vector<ProbeTrace> trace(const std::vector<ProbeRay>& rays, bool brute_force = true);
     // Rays that the kernel find_hits traces, as (t, u, v, primitive).
-    std::vector<glm::vec4> find_hits(const std::vector<ProbeRay>& rays, std::vector<uint32_t>* instances = nullptr);
+    std::vector<glm::vec4> find_hits(const std::vector<ProbeRay>& rays,
+                                     std::vector<uint32_t>* instances = nullptr);
 
     // Of a kernel that includes lib/primitives.glsl; `buffers` are the kernel's own.
-    Kernel kernel(const std::string& name, const std::string& text, BufferTable buffers, const std::string& defines = "");
+    Kernel kernel(const std::string& name, const std::string& text, BufferTable buffers,
+                  const std::string& defines = "");
 
     const std::vector<PrimitiveRecord>& primitives() const { return world_.primitives; }
 
@@ -69,6 +75,7 @@ class GeometryProbe {
     std::vector<uint32_t> instance_meshes_;  // by transform
     std::vector<PrimitiveRecord> placed_;
     std::vector<Box> boxes_;
+    SceneDescription scene_;
     World world_;
     ShaderSources sources_;
     std::string defines_;
