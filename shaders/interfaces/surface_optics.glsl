@@ -2,11 +2,14 @@
 // away from the surface; +z is the shading normal, on the side of the geometric normal. A class NAME defines, for
 // its record R:
 //
+//   R          NAME_resolve(R r, SurfaceContext c)                  the record at this point: textures applied. The functions
+//                                                                   below but the last see resolved records only
 //   Spectrum   NAME_eval(R r, SurfaceContext c, vec3 wo, vec3 wi)    f * |cos wi|, 1/sr, without delta parts
 //   float      NAME_pdf(R r, SurfaceContext c, vec3 wo, vec3 wi)     of `sample` choosing wi given wo, 1/sr, without delta parts
 //   BsdfSample NAME_sample(R r, SurfaceContext c, vec3 wo, vec3 u)   wi with weight f * |cos wi| / pdf
 //   Spectrum   NAME_transparency(R r, SurfaceContext c, vec3 wo)     part that passes straight on, unscattered
-//   bool       NAME_is_delta(R r, SurfaceContext c)                  eval is zero for every pair of directions
+//   bool       NAME_is_delta(R r, SurfaceContext c)                  eval is zero for every pair of directions; may say
+//                                                                   false where only a texture makes it so
 //
 // wo is the direction where the path comes from, wi where it goes. c.importance tells the transport direction: false
 // carries radiance (backward rays: transmission scales by (ior_i / ior_o)², Veach 1997 eq. 5.12), true carries power.
@@ -45,7 +48,7 @@ BsdfSample no_bsdf_sample() { return BsdfSample(vec3(0, 0, 1), Spectrum(0), 0.0,
 Spectrum surface_eval(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
     Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_eval(name##_record(record_index(ref)), c, wo, wi); break;
+#define CASE(tag, Struct, name) case tag: result = name##_eval(name##_resolve(name##_record(record_index(ref)), c), c, wo, wi); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }
@@ -55,7 +58,7 @@ Spectrum surface_eval(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
 float surface_pdf(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
     float result = 0.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_pdf(name##_record(record_index(ref)), c, wo, wi); break;
+#define CASE(tag, Struct, name) case tag: result = name##_pdf(name##_resolve(name##_record(record_index(ref)), c), c, wo, wi); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }
@@ -65,7 +68,32 @@ float surface_pdf(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
 BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
     BsdfSample result = no_bsdf_sample();
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_sample(name##_record(record_index(ref)), c, wo, u); break;
+#define CASE(tag, Struct, name) case tag: result = name##_sample(name##_resolve(name##_record(record_index(ref)), c), c, wo, u); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+// All of an event at once: eval and pdf towards a light at wi, and a sample. The class is visited and its textures are read
+// once.
+struct SurfaceEvent {
+    Spectrum value;
+    float pdf;
+    BsdfSample next;
+};
+
+SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 u) {
+    SurfaceEvent result = SurfaceEvent(Spectrum(0), 0.0, no_bsdf_sample());
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name)                                                 \
+    case tag: {                                                                \
+        Struct r = name##_resolve(name##_record(record_index(ref)), c);        \
+        result.value = name##_eval(r, c, wo, wi);                              \
+        result.pdf = name##_pdf(r, c, wo, wi);                                 \
+        result.next = name##_sample(r, c, wo, u);                              \
+        break;                                                                 \
+    }
         SURFACE_CLASSES(CASE)
 #undef CASE
     }
@@ -75,7 +103,7 @@ BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
 Spectrum surface_transparency(uint ref, SurfaceContext c, vec3 wo) {
     Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_transparency(name##_record(record_index(ref)), c, wo); break;
+#define CASE(tag, Struct, name) case tag: result = name##_transparency(name##_resolve(name##_record(record_index(ref)), c), c, wo); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }

@@ -24,7 +24,7 @@ void main() {
     for (uint first = gl_WorkGroupID.x * gl_WorkGroupSize.x; first < count; first += stride) {
         uint i = first + gl_LocalInvocationID.x;
         bool alive = false;
-        ShadowRay shadow = ShadowRay(vec3(0), vec3(0, 0, 1), 0.0, Spectrum(0), NO_RECORD);
+        ShadowRay shadow = no_shadow_ray();
         uint slot = 0u;
         if (i < count) {
             slot = ray_queue[read_queue + i];

@@ -1,10 +1,11 @@
 // Which light a point asks: lights are chosen in proportion to an estimate of their illuminance there.
 //
 // Lights are numbered so that those at infinity come first. These share LIGHTS_AT_INFINITY / (LIGHTS_AT_INFINITY + 1) of the
-// choices equally; the rest goes to the finite ones. Up to a few of them are compared one by one; more are found by a
-// stochastic descent of a binary tree whose nodes bound position, intensity and directions (Conty Estévez & Kulla 2018,
-// "Importance Sampling of Many Lights with Adaptive Tree Splitting"; host/scene/light_tree.h builds it). The receiving
-// normal is left out, so that a ray that hits a light later can tell the probability from its origin alone.
+// choices equally; the rest goes to the finite ones. A few of them are compared one by one; more are found by a stochastic
+// descent of a tree whose nodes bound position, intensity and directions of four sets each (Conty Estévez & Kulla 2018,
+// "Importance Sampling of Many Lights with Adaptive Tree Splitting", where it is binary: with four, half as many choices are
+// made from coarse bounds for the same work). host/scene/light_tree.h builds it. The receiving normal is left out, so that
+// a ray that hits a light later can tell the probability from its origin alone.
 //
 // The host defines LIGHT_COUNT, INFINITE_LIGHT_COUNT and HAS_LIGHT_TREE (0: the nodes are a list, to be read in order).
 
@@ -26,121 +27,134 @@ bool choose_first(float p, inout float u) {
 }
 
 #if LIGHT_COUNT > 1 && LIGHT_COUNT > INFINITE_LIGHT_COUNT
-// A set of finite lights. Two clusters make a node of 64 bytes.
-struct LightCluster {
-    vec3 center;      // m
-    float radius;     // m, of a sphere around all its lights
-    float intensity;  // cd, largest over directions
-    uint axis;        // octahedral, 2 x 16 bits
-    uint cosines;     // of the angles of LightCone, 2 x 16 bits: normals lower, emission upper; never too narrow
-    uint child;       // index of a node, or LIGHT_LEAF + the light's number; NO_RECORD = empty
+// Four sets of finite lights, component by component; 128 bytes.
+struct LightNode {
+    vec4 x, y, z;      // m, centre of a sphere around all lights of the set
+    vec4 radius;       // m
+    vec4 intensity;    // cd, largest over directions
+    uvec4 axes;        // of the set's LightCone: octahedral, 2 x 16 bits
+    uvec4 cosines;     // 2 x 16 bits: of its normals lower, of its emission upper; never too narrow
+    uvec4 children;    // index of a node, or LIGHT_LEAF + the light's number; NO_RECORD = empty
 };
 const uint LIGHT_LEAF = 0x80000000u;
 
-layout(scalar, set = 0) readonly buffer LightNodes { uvec4 light_nodes[]; };  // 4 a node: two LightClusters
-// Per light: bit k = child taken at depth k; without a tree: its position in the list.
+layout(scalar, set = 0) readonly buffer LightNodes { LightNode light_nodes[]; };
+// Per light: bits 2k and 2k + 1 are the child taken at depth k; without a tree its place in the list.
 layout(scalar, set = 0) readonly buffer LightTrails { uint light_trails[]; };
 
-vec3 octahedral_direction(uint packed_axis) {
-    vec2 p = unpackSnorm2x16(packed_axis);
-    vec3 v = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-    float fold = max(-v.z, 0.0);
-    v.x += v.x >= 0.0 ? -fold : fold;
-    v.y += v.y >= 0.0 ? -fold : fold;
-    return normalize(v);
-}
+vec4 lower_snorm(uvec4 v) { return max(vec4(ivec4(v << 16) >> 16) * (1.0 / 32767.0), -1.0); }
+vec4 upper_snorm(uvec4 v) { return max(vec4(ivec4(v) >> 16) * (1.0 / 32767.0), -1.0); }
 
-// Bound of the illuminance that a cluster can cause at a point that faces it: intensity * cos(max(0, w - n - b)) / d², with
-// w the angle between its axis and the direction to the point, n the spread of its normals, b the half angle under which
-// it appears (equations 1 to 3 of the paper). Zero where no light of the cluster shines.
-float cluster_importance(uvec4 a, uvec4 b, vec3 point) {
-    vec4 sphere = uintBitsToFloat(a);
-    vec3 d = point - sphere.xyz;
-    float d2 = dot(d, d), r2 = sphere.w * sphere.w;
-    vec2 cosines = unpackSnorm2x16(b.z);
-    float cos_n = cosines.x, cos_e = cosines.y;
-    float sin_n = sqrt(max(0.0, 1.0 - cos_n * cos_n));
+// Estimate of the illuminance that each set of lights causes at a point that faces it: intensity * cosine / d². With w the
+// angle between the axis and the direction to the point, n the spread of the normals and b the half angle under which
+// the set appears, no light of it leaves at less than w - n - b (equations 1 to 3 of the paper): the set counts as dark only
+// where that exceeds the angle of emission. The cosine itself is that of w - n, as if all lights stood in the centre, which halves
+// the variance beside the paper's bound, and a part of the bound where that is larger. Distances below half the radius are
+// taken as that: the set surrounds the point. (A quarter of the squared radius, not all of it, takes away two thirds of
+// the variance with ten thousand lights; for a single surface it is its largest illuminance, within 4 / pi.)
+vec4 node_importances(uint node, vec3 point, out uvec4 children) {
+    LightNode n = light_nodes[node];
+    children = n.children;
+    vec4 dx = point.x - n.x, dy = point.y - n.y, dz = point.z - n.z;
+    vec4 d2 = dx * dx + dy * dy + dz * dz, r2 = n.radius * n.radius;
+
+    vec4 ax = lower_snorm(n.axes), ay = upper_snorm(n.axes), az = 1.0 - abs(ax) - abs(ay);
+    vec4 fold = max(-az, 0.0);
+    ax += mix(fold, -fold, greaterThanEqual(ax, vec4(0)));
+    ay += mix(fold, -fold, greaterThanEqual(ay, vec4(0)));
+    vec4 scale = (ax * ax + ay * ay + az * az) * d2;
+    vec4 cos_w = clamp((ax * dx + ay * dy + az * dz) * inversesqrt(max(scale, 1e-36)), -1.0, 1.0);
+    vec4 sin_w = sqrt(1.0 - cos_w * cos_w);
+    vec4 cos_n = lower_snorm(n.cosines), cos_e = upper_snorm(n.cosines);
+    vec4 sin_n = sqrt(1.0 - cos_n * cos_n);
+
     // x = w - n, then y = x - b; angles below zero count as zero.
-    float cos_w = clamp(dot(octahedral_direction(b.y), d) * inversesqrt(max(d2, 1e-36)), -1.0, 1.0);
-    float sin_w = sqrt(1.0 - cos_w * cos_w);
-    bool within = cos_w >= cos_n;
-    float cos_x = within ? 1.0 : cos_w * cos_n + sin_w * sin_n;
-    float sin_x = within ? 0.0 : sin_w * cos_n - cos_w * sin_n;
-    float sin_b2 = min(r2 / max(d2, 1e-36), 1.0);
-    float cos_b = sqrt(1.0 - sin_b2);
-    bool seen = cos_x >= cos_b || d2 <= r2;
-    float cos_y = seen ? 1.0 : cos_x * cos_b + sin_x * sqrt(sin_b2);
-    float importance = uintBitsToFloat(b.x) * max(cos_y, 0.0) / max(max(d2, r2), 1e-36);
-    return cos_y >= cos_e && b.w != NO_RECORD ? min(importance, INFINITY) : 0.0;
+    bvec4 within = greaterThanEqual(cos_w, cos_n);
+    vec4 cos_x = mix(cos_w * cos_n + sin_w * sin_n, vec4(1), within);
+    vec4 sin_x = mix(sin_w * cos_n - cos_w * sin_n, vec4(0), within);
+    vec4 sin_b2 = min(r2 / max(d2, 1e-36), 1.0);
+    vec4 cos_b = mix(sqrt(1.0 - sin_b2), vec4(-1), lessThanEqual(d2, r2));
+    vec4 cos_y = mix(cos_x * cos_b + sin_x * sqrt(sin_b2), vec4(1), greaterThanEqual(cos_x, cos_b));
+
+    vec4 cosine = max(cos_x, 0.3 * cos_y);
+    vec4 importance = min(n.intensity * cosine / max(max(d2, 0.25 * r2), 1e-36), INFINITY);
+    return mix(vec4(0), importance, greaterThan(cos_y, max(cos_e, 0.0)));
 }
 
-// Importance of the two clusters of a node, and where they lead.
-vec2 node_importances(uint node, vec3 point, out uvec2 children) {
-    uvec4 a0 = light_nodes[4u * node], b0 = light_nodes[4u * node + 1u];
-    uvec4 a1 = light_nodes[4u * node + 2u], b1 = light_nodes[4u * node + 3u];
-    children = uvec2(b0.w, b1.w);
-    return vec2(cluster_importance(a0, b0, point), cluster_importance(a1, b1, point));
+// One of four with probability in proportion to `w`, whose sum must be positive; u in [0,1) is stretched anew.
+uint choose_of_four(vec4 w, inout float u, out float weight) {
+    float a = w.x, b = a + w.y, c = b + w.z;
+    float x = u * (c + w.w);
+    uint k = x < a ? 0u : x < b ? 1u : x < c ? 2u : 3u;
+    weight = k == 0u ? w.x : k == 1u ? w.y : k == 2u ? w.z : w.w;
+    float start = k == 0u ? 0.0 : k == 1u ? a : k == 2u ? b : c;
+    u = clamp((x - start) / weight, 0.0, 1.0 - EPSILON);
+    return k;
 }
+float sum_of_four(vec4 w) { return w.x + w.y + w.z + w.w; }
+uint pick(uvec4 v, uint k) { return k == 0u ? v.x : k == 1u ? v.y : k == 2u ? v.z : v.w; }
+float pick(vec4 v, uint k) { return k == 0u ? v.x : k == 1u ? v.y : k == 2u ? v.z : v.w; }
 
 // Among the finite lights.
 uint select_finite_light(vec3 point, inout float u, out float probability) {
-    uvec2 children;
+    uvec4 children;
+    float weight;
 #if HAS_LIGHT_TREE
     probability = 1.0;
     uint node = 0u;
     do {
-        vec2 w = node_importances(node, point, children);
-        float sum = w.x + w.y;
-        bool first = choose_first(sum > 0.0 ? w.x / sum : 0.5, u);
-        probability = sum > 0.0 ? probability * ((first ? w.x : w.y) / sum) : 0.0;
-        node = first ? children.x : children.y;
-    } while (node < LIGHT_LEAF);
-    return node - LIGHT_LEAF;
+        vec4 w = node_importances(node, point, children);
+        float sum = sum_of_four(w);
+        bool dark = !(sum > 0.0);
+        node = pick(children, choose_of_four(dark ? vec4(1, 0, 0, 0) : w, u, weight));
+        probability = dark ? 0.0 : probability * (weight / sum);
+    } while (node < LIGHT_LEAF && probability > 0.0);
+    return probability > 0.0 ? node - LIGHT_LEAF : uint(INFINITE_LIGHT_COUNT);
 #else
-    // One pass: each cluster replaces the choice so far with probability importance / sum so far.
-    float sum = 0.0, chosen = 0.0;
-    uint light = uint(INFINITE_LIGHT_COUNT);
-    for (uint node = 0u; 2u * node < FINITE_LIGHT_COUNT; node++) {
-        vec2 w = node_importances(node, point, children);
-        for (int i = 0; i < 2; i++) {
-            float importance = i == 0 ? w.x : w.y;
-            sum += importance;
-            bool take = importance > 0.0 && choose_first(importance / sum, u);
-            light = take ? (i == 0 ? children.x : children.y) - LIGHT_LEAF : light;
-            chosen = take ? importance : chosen;
-        }
+    // One pass: each node takes the place of the one chosen so far with probability its sum / sum so far.
+    float sum = 0.0;
+    vec4 chosen = vec4(0);
+    uvec4 chosen_children = uvec4(LIGHT_LEAF + uint(INFINITE_LIGHT_COUNT));
+    for (uint node = 0u; 4u * node < FINITE_LIGHT_COUNT; node++) {
+        vec4 w = node_importances(node, point, children);
+        float part = sum_of_four(w);
+        sum += part;
+        bool take = part > 0.0 && choose_first(part / sum, u);
+        chosen = take ? w : chosen;
+        chosen_children = take ? children : chosen_children;
     }
-    probability = sum > 0.0 ? chosen / sum : 0.0;
-    return light;
+    bool dark = !(sum > 0.0);
+    uint k = choose_of_four(dark ? vec4(1, 0, 0, 0) : chosen, u, weight);
+    probability = dark ? 0.0 : weight / sum;
+    return pick(chosen_children, k) - LIGHT_LEAF;
 #endif
 }
 
 float finite_light_probability(uint light, vec3 point) {
     uint trail = light_trails[light];
-    uvec2 children;
+    uvec4 children;
 #if HAS_LIGHT_TREE
     float probability = 1.0;
     uint node = 0u;
     do {
-        vec2 w = node_importances(node, point, children);
-        float sum = w.x + w.y;
-        bool first = (trail & 1u) == 0u;
-        trail >>= 1;
-        probability = sum > 0.0 ? probability * ((first ? w.x : w.y) / sum) : 0.0;
-        node = first ? children.x : children.y;
-    } while (node < LIGHT_LEAF);
+        vec4 w = node_importances(node, point, children);
+        float sum = sum_of_four(w);
+        uint k = trail & 3u;
+        trail >>= 2;
+        node = pick(children, k);
+        probability = sum > 0.0 ? probability * (pick(w, k) / sum) : 0.0;
+    } while (node < LIGHT_LEAF && probability > 0.0);
     return probability;
 #else
     float sum = 0.0, own = 0.0;
-    for (uint node = 0u; 2u * node < FINITE_LIGHT_COUNT; node++) {
-        vec2 w = node_importances(node, point, children);
-        sum += w.x + w.y;
-        own = trail == 2u * node ? w.x : trail == 2u * node + 1u ? w.y : own;
+    for (uint node = 0u; 4u * node < FINITE_LIGHT_COUNT; node++) {
+        vec4 w = node_importances(node, point, children);
+        sum += sum_of_four(w);
+        own = trail >> 2 == node ? pick(w, trail & 3u) : own;
     }
     return sum > 0.0 ? own / sum : 0.0;
 #endif
 }
-
 #endif
 
 // A light for `point`; `u_remapped` is u stretched anew for further use. Probability 0: no light reaches the point.

@@ -24,6 +24,8 @@ struct ShadowRay {
     uint medium;
 };
 
+ShadowRay no_shadow_ray() { return ShadowRay(vec3(0), vec3(0, 0, 1), 0.0, Spectrum(0), NO_RECORD); }
+
 // A path of more events than this is cut, and what it carried is reported as lost: only a closed scene that absorbs
 // nothing gets there (Russian roulette lets a path live for 65536 events with probability 1e-1400).
 const uint MAX_DEPTH = 65536u;

@@ -59,15 +59,6 @@ ScatteringPoint scattering_point(SurfacePoint p, vec3 direction, uint medium, bo
     return s;
 }
 
-// f * |cos| towards a world direction; zero where the shading normal and the surface disagree on which side that is.
-Spectrum scattering_eval(ScatteringPoint s, vec3 direction, out float pdf) {
-    vec3 wi = direction * s.frame;
-    pdf = 0.0;
-    if (wi.z * dot(direction, s.normal) <= 0.0) return Spectrum(0);
-    pdf = surface_pdf(s.surface, s.context, s.wo, wi);
-    return surface_eval(s.surface, s.context, s.wo, wi);
-}
-
 // The medium that a ray is in after it leaves in a world direction.
 uint scattering_medium(ScatteringPoint s, vec3 direction) {
     return dot(direction, s.normal) > 0.0 ? s.medium_above : s.medium_below;

@@ -7,6 +7,8 @@ struct SpectrumRef {
 };
 
 Spectrum spectrum_value(SpectrumRef ref) { return ref.data.xyz; }
+// Multiplies a parameter by a color, as textures do.
+void scale_spectrum(inout SpectrumRef ref, vec3 color) { ref.data.xyz *= color; }
 
 // CIE luminance Y of linear Rec.709 (ITU-R BT.709-6).
 float luminance(Spectrum s) { return dot(s, vec3(0.2126, 0.7152, 0.0722)); }

@@ -41,24 +41,27 @@ float shadow_t_max(vec3 origin, float distance) {
     return distance * (1.0 - 8.0 * EPSILON) - 32.0 * EPSILON * (max(a.x, max(a.y, a.z)) + distance);
 }
 
-ShadowRay connect_light(inout Path path, SurfacePoint p, ScatteringPoint s) {
-    ShadowRay shadow = ShadowRay(vec3(0), vec3(0, 0, 1), 0.0, Spectrum(0), NO_RECORD);
+// A light for the point: what it would bring if the surface scattered all of it. pdf 0 = none.
+LightSample sample_light(inout Path path, vec3 position) {
     vec2 u = sample_2d(path.random);
     uint light = 0u;
     float probability = 1.0;
 #if LIGHT_COUNT > 1
     float unused;
-    light = select_light(p.position, sample_1d(path.random), probability, unused);
+    light = select_light(position, sample_1d(path.random), probability, unused);
+    if (!(probability > 0.0)) return no_light_sample();
 #endif
-    if (!(probability > 0.0)) return shadow;
-    LightSample l = light_sample_towards(lights[light], p.position, u);
-    float pdf = l.pdf * probability;
-    if (!(pdf > 0.0) || is_black(l.radiance)) return shadow;
-    float pdf_scatter;
-    Spectrum f = scattering_eval(s, l.direction, pdf_scatter);
-    if (is_black(f)) return shadow;
-    float weight = l.is_delta ? 1.0 : power_heuristic(pdf, pdf_scatter);
-    shadow.contribution = path.throughput * f * l.radiance * (weight / pdf);
+    LightSample l = light_sample_towards(lights[light], position, u);
+    l.pdf *= probability;
+    return l;
+}
+
+// The shadow ray for a light sample, given f * |cos| towards it and the pdf of scattering that way.
+ShadowRay connect_light(Path path, SurfacePoint p, ScatteringPoint s, LightSample l, Spectrum value, float pdf_scatter) {
+    ShadowRay shadow = no_shadow_ray();
+    if (!(l.pdf > 0.0) || is_black(l.radiance) || is_black(value)) return shadow;
+    float weight = l.is_delta ? 1.0 : power_heuristic(l.pdf, pdf_scatter);
+    shadow.contribution = path.throughput * value * l.radiance * (weight / l.pdf);
     shadow.origin = offset_origin(p.position, p.error, p.geometric_normal, l.direction);
     shadow.direction = l.direction;
     shadow.t_max = l.distance >= INFINITY ? INFINITY : max(0.0, shadow_t_max(shadow.origin, l.distance));
@@ -66,19 +69,18 @@ ShadowRay connect_light(inout Path path, SurfacePoint p, ScatteringPoint s) {
     return shadow;
 }
 
-// Chooses where the path goes on. False: it is absorbed.
-bool scatter_surface(inout Path path, SurfacePoint p, ScatteringPoint s) {
-    BsdfSample b = surface_sample(s.surface, s.context, s.wo, sample_3d(path.random));
+// The path goes on along the sampled direction. False: it is absorbed.
+bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, BsdfSample b) {
     if (b.event == EVENT_NONE || is_black(b.weight)) return false;
-    vec3 direction = (b.event & EVENT_STRAIGHT) != 0u ? path.direction : normalize(s.frame * b.wi);
-    float side = dot(direction, s.normal);
+    bool straight = (b.event & EVENT_STRAIGHT) != 0u;
+    vec3 direction = straight ? path.direction : normalize(s.frame * b.wi);
     // A direction that the shading frame puts on one side of the surface and the surface on the other carries nothing.
-    if ((b.event & EVENT_STRAIGHT) == 0u && side * b.wi.z <= 0.0) return false;
+    if (!straight && dot(direction, s.normal) * b.wi.z <= 0.0) return false;
     path.throughput *= b.weight;
     path.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
     path.direction = direction;
     path.medium = scattering_medium(s, direction);
-    if ((b.event & EVENT_STRAIGHT) == 0u) {
+    if (!straight) {
         // What goes straight on stays a candidate for light sampling at the event before.
         path.pdf = (b.event & EVENT_DELTA) != 0u ? 0.0 : b.pdf;
         path.reference = p.position;
@@ -104,7 +106,7 @@ bool survive_roulette(inout Path path) {
 
 // Returns whether the path goes on; `shadow` is to be traced in either case.
 bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowRay shadow) {
-    shadow = ShadowRay(vec3(0), vec3(0, 0, 1), 0.0, Spectrum(0), NO_RECORD);
+    shadow = no_shadow_ray();
     // cross_media
 #if HAS_MEDIA
     if (path.medium != NO_RECORD) path.throughput *= medium_transmittance(path.medium, hit.t);
@@ -118,12 +120,16 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     if (p.light != NO_RECORD)
         path.radiance += collect_light(path, p.light, LightHit(p.position, p.geometric_normal, p.uv0, p.uv1));
     ScatteringPoint s = scattering_point(p, path.direction, path.medium, false);
-    // connect_lights
+    // connect_lights, scatter_surfaces
+    LightSample l = no_light_sample();
 #if LIGHT_COUNT > 0
-    if (!surface_is_delta(s.surface, s.context)) shadow = connect_light(path, p, s);
+    if (!surface_is_delta(s.surface, s.context)) l = sample_light(path, p.position);
 #endif
-    // scatter_surfaces
-    if (!scatter_surface(path, p, s) || !survive_roulette(path)) return false;
+    vec3 wi = l.direction * s.frame;
+    SurfaceEvent event = surface_event(s.surface, s.context, s.wo, wi, sample_3d(path.random));
+    // No light where the shading normal and the surface disagree on which side it is.
+    if (wi.z * dot(l.direction, s.normal) > 0.0) shadow = connect_light(path, p, s, l, event.value, event.pdf);
+    if (!follow_sample(path, p, s, event.next) || !survive_roulette(path)) return false;
     if (++path.depth >= MAX_DEPTH) {
         counters.depth_limit++;
         counters.depth_limit_lost += luminance(path.throughput);

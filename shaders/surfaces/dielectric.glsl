@@ -15,7 +15,7 @@ struct Dielectric {
 
 Dielectric dielectric_resolve(Dielectric r, SurfaceContext c) { return r; }
 
-bool dielectric_is_delta(Dielectric r) {
+bool dielectric_is_delta(Dielectric r, SurfaceContext c) {
     return interface_is_smooth(r.alpha, c.ior_above, c.ior_below);
 }
 

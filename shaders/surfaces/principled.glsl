@@ -221,8 +221,9 @@ Spectrum principled_transparency(Principled r, SurfaceContext c, vec3 wo) {
     return principled_choice(principled_material(r, c, wo.z < 0.0 ? -1.0 : 1.0), abs(wo.z)).straight;
 }
 
-bool principled_is_delta(Principled r) {
-    bool never_opaque = r.metallic_roughness_texture.index == NO_RECORD && r.transmission_texture.index == NO_RECORD &&
-                        (r.metallic >= 1.0 || r.transmission >= 1.0);
-    return square(clamp(r.roughness, 0.0, 1.0)) < SMOOTH_ALPHA && never_opaque;
+bool principled_is_delta(Principled r, SurfaceContext c) {
+    uint textures = r.base_color_texture.index & r.metallic_roughness_texture.index & r.transmission_texture.index;
+    r.base_color *= c.color;
+    PrincipledMaterial m = principled_material(r, c, 1.0);
+    return textures == NO_RECORD && (m.coverage == 0.0 || (m.smooth_facets && m.opaque == 0.0));
 }

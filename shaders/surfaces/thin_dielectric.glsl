@@ -28,4 +28,4 @@ Spectrum thin_dielectric_transparency(ThinDielectric r, SurfaceContext c, vec3 w
     return Spectrum(1.0 - thin_dielectric_reflectance(r, c, wo));
 }
 
-bool thin_dielectric_is_delta(ThinDielectric r) { return true; }
+bool thin_dielectric_is_delta(ThinDielectric r, SurfaceContext c) { return true; }
