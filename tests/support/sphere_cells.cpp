@@ -122,7 +122,8 @@ std::vector<glm::dvec4> SphereCells::integrate(const Integrand& integrand, doubl
             const glm::dvec4 sum = fine[4 * i] + fine[4 * i + 1] + fine[4 * i + 2] + fine[4 * i + 3];
             const glm::dvec4 d = glm::abs(sum - p.coarse);
             const bool settled = std::max({d.x, d.y, d.z, d.w}) <= tolerance;
-            const bool missed = sum.w * double(point_count_) < 0.1 * double(p.points.size());
+            const double found = sum.w * double(point_count_), there = double(p.points.size());
+            const bool missed = found < 0.1 * there || (depth < 3 && std::abs(found - there) > 2.5 * std::sqrt(there));
             if (last || (settled && !missed)) {
                 result[p.owner] += sum;
                 continue;
