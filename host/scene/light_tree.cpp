@@ -9,7 +9,8 @@
 namespace etendue {
 namespace {
 
-constexpr uint32_t leaf_bit = 0x80000000u, no_child = 0xFFFFFFFFu;
+constexpr uint32_t leaf_bit = 0x80000000u;
+constexpr uint32_t max_depth = 16;  // two bits a level in a trail
 constexpr double pi = std::numbers::pi;
 
 struct Cone {
@@ -108,17 +109,16 @@ struct Builder {
         uint32_t child;
     };
 
-    static LightCluster pack(const Subtree& s) {
+    static void store(LightNode& node, int k, const Subtree& s) {
         const glm::dvec3 lo(s.lo), hi(s.hi);
-        LightCluster c;
-        c.center = glm::vec3(0.5 * (lo + hi));
-        const glm::dvec3 corner = glm::max(glm::abs(hi - glm::dvec3(c.center)), glm::abs(lo - glm::dvec3(c.center)));
-        c.radius = float(glm::length(corner) * (1 + 1e-6));
-        c.intensity = float(s.intensity);
-        c.axis = pack_octahedral(s.cone.axis);
-        c.cosines = pack_cosine(s.cone.angle) | pack_cosine(s.emission) << 16;
-        c.child = s.child;
-        return c;
+        const glm::vec3 center(0.5 * (lo + hi));
+        const glm::dvec3 corner = glm::max(glm::abs(hi - glm::dvec3(center)), glm::abs(lo - glm::dvec3(center)));
+        node.x[k] = center.x, node.y[k] = center.y, node.z[k] = center.z;
+        node.radius[k] = float(glm::length(corner) * (1 + 1e-6));
+        node.intensity[k] = float(s.intensity);
+        node.axes[k] = pack_octahedral(s.cone.axis);
+        node.cosines[k] = pack_cosine(s.cone.angle) | pack_cosine(s.emission) << 16;
+        node.children[k] = s.child;
     }
 
     static Subtree leaf(const Item& item) {
@@ -128,7 +128,7 @@ struct Builder {
     }
 
     // Chooses where to cut items [first, last) in two and orders them accordingly.
-    size_t split(size_t first, size_t last, uint32_t depth) {
+    size_t split(size_t first, size_t last, bool must_halve) {
         const size_t count = last - first;
         glm::vec3 lo(std::numeric_limits<float>::max()), hi(std::numeric_limits<float>::lowest());
         for (size_t i = first; i < last; ++i) {
@@ -145,8 +145,6 @@ struct Builder {
         };
         double best = std::numeric_limits<double>::infinity();
         int best_axis = -1, best_bin = 0;
-        // Few levels left of a trail's 32 bits: halve.
-        const bool must_halve = uint32_t(std::bit_width(count - 1)) + depth >= 31;
         for (int axis = 0; axis < 3 && !must_halve; ++axis) {
             if (!(extent[axis] > 0)) continue;
             std::array<SplitSet, bin_count> bins, below;
@@ -173,20 +171,52 @@ struct Builder {
         return first + count / 2;
     }
 
+    // How much is to be gained by splitting a range: the spread of its power in space.
+    double split_gain(size_t first, size_t last) const {
+        if (last - first == 1) return -1;
+        SplitSet set;
+        for (size_t i = first; i < last; ++i) set.add(items[i]);
+        const glm::dvec3 extent = glm::dvec3(set.hi) - glm::dvec3(set.lo);
+        return set.power * glm::dot(extent, extent);
+    }
+
     Subtree build(size_t first, size_t last, uint32_t depth, uint32_t trail) {
         if (last - first == 1) {
             tree.trails[items[first].light] = trail;
             return leaf(items[first]);
         }
-        const uint32_t node = uint32_t(tree.nodes.size());
+        const uint32_t index = uint32_t(tree.nodes.size());
         tree.nodes.emplace_back();
         tree.depth = std::max(tree.depth, depth + 1);
-        const size_t middle = split(first, last, depth);
-        const Subtree a = build(first, middle, depth + 1, trail);
-        const Subtree b = build(middle, last, depth + 1, trail | 1u << depth);
-        tree.nodes[node] = {pack(a), pack(b)};
-        return {glm::min(a.lo, b.lo), glm::max(a.hi, b.hi),       a.intensity + b.intensity, unite(a.cone, b.cone),
-                std::max(a.emission, b.emission), node};
+
+        // Four sets, by splitting one after the other. Where few levels are left, into quarters: level d must not be given
+        // more than 4^(16 - d) lights.
+        const bool must_halve = uint32_t(std::bit_width(last - first - 1)) > 2 * (max_depth - depth - 1);
+        std::vector<size_t> cuts = {first, last};
+        std::vector<double> gains = {split_gain(first, last)};
+        while (cuts.size() < 5) {
+            size_t best = 0;
+            for (size_t k = 1; k < gains.size(); ++k) {
+                const bool larger = cuts[k + 1] - cuts[k] > cuts[best + 1] - cuts[best];
+                if (must_halve ? larger : gains[k] > gains[best]) best = k;
+            }
+            if (cuts[best + 1] - cuts[best] < 2) break;
+            const size_t middle = split(cuts[best], cuts[best + 1], must_halve);
+            cuts.insert(cuts.begin() + best + 1, middle);
+            gains[best] = split_gain(cuts[best], middle);
+            gains.insert(gains.begin() + best + 1, split_gain(middle, cuts[best + 2]));
+        }
+        Subtree whole;
+        for (size_t k = 0; k + 1 < cuts.size(); ++k) {
+            const Subtree part = build(cuts[k], cuts[k + 1], depth + 1, trail | uint32_t(k) << (2 * depth));
+            store(tree.nodes[index], int(k), part);
+            if (k == 0) whole = part;
+            else
+                whole = {glm::min(whole.lo, part.lo), glm::max(whole.hi, part.hi), whole.intensity + part.intensity,
+                         unite(whole.cone, part.cone), std::max(whole.emission, part.emission), index};
+        }
+        whole.child = index;
+        return whole;
     }
 };
 
@@ -210,16 +240,15 @@ LightTree build_light_tree(std::span<const LightBounds> lights, uint32_t max_lis
     builder.items = items;
     if (items.size() > max_listed) {
         builder.tree.is_tree = true;
-        builder.tree.nodes.reserve(items.size());
+        builder.tree.nodes.reserve(items.size() / 2);
         builder.build(0, items.size(), 0, 0);
         return std::move(builder.tree);
     }
-    builder.tree.nodes.resize((items.size() + 1) / 2);
+    builder.tree.nodes.resize((items.size() + 3) / 4);
     for (size_t i = 0; i < items.size(); ++i) {
-        builder.tree.nodes[i / 2][i % 2] = Builder::pack(Builder::leaf(items[i]));
+        Builder::store(builder.tree.nodes[i / 4], int(i % 4), Builder::leaf(items[i]));
         builder.tree.trails[items[i].light] = uint32_t(i);
     }
-    if (items.size() % 2) builder.tree.nodes.back()[1] = LightCluster{{}, 0, 0, 0, 0, no_child};
     return std::move(builder.tree);
 }
 

@@ -1,6 +1,5 @@
 // The hierarchy over finite lights that shaders/lib/light_selection.glsl descends.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -21,17 +20,12 @@ static_assert(sizeof(LightBounds) == 48);
 
 bool is_at_infinity(const LightBounds& light);
 
-// Mirrors struct LightCluster of light_selection.glsl.
-struct LightCluster {
-    glm::vec3 center;
-    float radius;
-    float intensity;
-    uint32_t axis;
-    uint32_t cosines;
-    uint32_t child;
+// Four sets of lights; mirrors struct LightNode of light_selection.glsl.
+struct LightNode {
+    glm::vec4 x{0}, y{0}, z{0}, radius{0}, intensity{0};
+    glm::uvec4 axes{0}, cosines{0}, children{0xFFFFFFFFu};
 };
-static_assert(sizeof(LightCluster) == 32);
-using LightNode = std::array<LightCluster, 2>;
+static_assert(sizeof(LightNode) == 128);
 
 // Contents of the buffers LightNodes and LightTrails.
 struct LightTree {
@@ -46,7 +40,7 @@ struct LightTree {
 constexpr uint32_t max_listed_lights = 8;
 
 // `lights` in the order of the buffer Lights: those at infinity first. The same input gives the same tree. At most 2^28
-// lights; the depth stays below 32.
+// lights; at most 16 levels.
 LightTree build_light_tree(std::span<const LightBounds> lights, uint32_t max_listed = max_listed_lights);
 
 // Greatest luminous intensity of a light, cd: its power over the solid angle integral of cos(max(0, angle - n)).

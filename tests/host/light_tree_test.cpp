@@ -47,48 +47,50 @@ glm::dvec3 octahedral_direction(uint32_t packed) {
     return glm::normalize(v);
 }
 
-bool encloses(const LightCluster& c, const LightBounds& b) {
+// Set k of a node holds the light.
+bool encloses(const LightNode& n, int k, const LightBounds& b) {
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 p(corner & 1 ? b.hi.x : b.lo.x, corner & 2 ? b.hi.y : b.lo.y, corner & 4 ? b.hi.z : b.lo.z);
-        if (glm::length(p - glm::dvec3(c.center)) > c.radius) return false;
+        if (glm::length(p - glm::dvec3(n.x[k], n.y[k], n.z[k])) > n.radius[k]) return false;
     }
-    const glm::dvec3 axis = octahedral_direction(c.axis), own(b.axis);
+    const glm::dvec3 axis = octahedral_direction(n.axes[k]), own(b.axis);
     const double between = std::atan2(glm::length(glm::cross(axis, own)), glm::dot(axis, own));
-    const double normals = std::acos(snorm(c.cosines)), emission = std::acos(snorm(c.cosines >> 16));
+    const double normals = std::acos(snorm(n.cosines[k])), emission = std::acos(snorm(n.cosines[k] >> 16));
     return std::min(between + std::acos(double(b.cos_normals)), pi) <= normals && std::acos(double(b.cos_emission)) <= emission;
 }
 
 constexpr uint32_t leaf_bit = 0x80000000u;
 
-// Calls visit(cluster) for every cluster on the way to a light; returns the light that the trail leads to.
-uint32_t follow(const LightTree& tree, uint32_t trail, const std::function<void(const LightCluster&)>& visit) {
+// Calls visit(node, k) for every set on the way to a light; returns the light that the trail leads to.
+uint32_t follow(const LightTree& tree, uint32_t trail, const std::function<void(const LightNode&, int)>& visit) {
     uint32_t node = 0;
     while (true) {
-        const LightCluster& c = tree.nodes[node][trail & 1];
-        trail >>= 1;
-        visit(c);
-        if (c.child & leaf_bit) return c.child & ~leaf_bit;
-        node = c.child;
+        const LightNode& n = tree.nodes[node];
+        const int k = int(trail & 3);
+        trail >>= 2;
+        visit(n, k);
+        node = n.children[k];
+        if (node & leaf_bit) return node & ~leaf_bit;
     }
 }
 
 void check_tree(const std::vector<LightBounds>& lights) {
     const LightTree tree = build_light_tree(lights);
     REQUIRE(tree.is_tree);
-    REQUIRE(tree.depth <= 32);
-    REQUIRE(tree.nodes.size() == lights.size() - tree.infinite_count - 1);
+    REQUIRE(tree.depth <= 16);
     double total = 0;
     for (uint32_t i = tree.infinite_count; i < lights.size(); ++i) {
         total += peak_intensity(lights[i]);
         uint32_t depth = 0;
-        const uint32_t reached = follow(tree, tree.trails[i], [&](const LightCluster& c) {
+        const uint32_t reached = follow(tree, tree.trails[i], [&](const LightNode& n, int k) {
             ++depth;
-            REQUIRE(encloses(c, lights[i]));
+            REQUIRE(encloses(n, k, lights[i]));
         });
         REQUIRE(reached == i);
         REQUIRE(depth <= tree.depth);
     }
-    CHECK(double(tree.nodes[0][0].intensity) + tree.nodes[0][1].intensity == doctest::Approx(total).epsilon(1e-5));
+    const glm::vec4 root = tree.nodes[0].intensity;
+    CHECK(double(root.x) + root.y + root.z + root.w == doctest::Approx(total).epsilon(1e-5));
 }
 
 }  // namespace
@@ -105,7 +107,7 @@ TEST_CASE("light tree: lights at infinity come first and stay out of the tree") 
     check_tree(lights);
 }
 
-TEST_CASE("light tree: coincident lights, lights on a line and lights at growing distances stay within 32 levels") {
+TEST_CASE("light tree: coincident lights, lights on a line and lights at growing distances stay within 16 levels") {
     check_tree(std::vector<LightBounds>(3000, point_light({1, 2, 3})));
     std::vector<LightBounds> line, growing;
     for (int i = 0; i < 3000; ++i) line.push_back(point_light({float(i), 0, 0}));
@@ -124,13 +126,14 @@ TEST_CASE("light tree: a few lights are listed, in order") {
     const auto lights = random_lights(5);
     const LightTree list = build_light_tree(lights);
     CHECK(!list.is_tree);
-    REQUIRE(list.nodes.size() == 3);
+    REQUIRE(list.nodes.size() == 2);
     for (uint32_t i = 0; i < 5; ++i) {
         CHECK(list.trails[i] == i);
-        CHECK(list.nodes[i / 2][i % 2].child == (leaf_bit | i));
-        CHECK(encloses(list.nodes[i / 2][i % 2], lights[i]));
+        CHECK(list.nodes[i / 4].children[i % 4] == (leaf_bit | i));
+        CHECK(encloses(list.nodes[i / 4], i % 4, lights[i]));
     }
-    CHECK(list.nodes[2][1].child == 0xFFFFFFFFu);
+    CHECK(list.nodes[1].children.y == 0xFFFFFFFFu);
+    CHECK(list.nodes[1].intensity.y == 0.0f);
     CHECK(build_light_tree({}).nodes.empty());
     CHECK(build_light_tree(std::vector{infinite_light()}).infinite_count == 1);
 }
