@@ -19,6 +19,7 @@ std::string Features::defines() const {
     define("HAS_TRIANGLES", triangles);
     define("HAS_SHAPES", shapes);
     define("HAS_INSTANCES", instances);
+    define("HAS_UNROLLED_TRAVERSAL", unrolled_traversal);
     define("HAS_VERTEX_ATTRIBUTES", vertex_attributes);
     define("HAS_NORMAL_MAPS", normal_maps);
     define("HAS_TEXTURES", textures);

@@ -10,6 +10,7 @@ struct Features {
     bool triangles = false;          // the world hierarchy holds triangles
     bool shapes = false;             // … analytic shapes
     bool instances = false;          // … instances of meshes
+    bool unrolled_traversal = false; // so few primitives that straight code tests them all
     bool vertex_attributes = false;  // normals, tangents, texture coordinates or colors
     bool normal_maps = false;
     bool textures = false;
