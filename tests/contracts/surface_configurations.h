@@ -11,38 +11,73 @@ struct SurfaceConfiguration {
     std::string label;
     nlohmann::json parameters = nlohmann::json::object();
     float ior_above = 1, ior_below = 1;
-    // The part of the light that leaves, whatever the direction, and how near to it every direction must come.
+    // The part of the light that leaves, whatever the direction, and how near to it every direction must
+    // come.
     std::optional<double> albedo;
     double albedo_tolerance = 2e-5;
-    // Width of the narrowest lobe: what single precision directions resolve of it limits how well values agree.
+    // Width of the narrowest lobe: what single precision directions resolve of it limits how well values
+    // agree.
     double width = 1;
 };
 
 inline std::vector<SurfaceConfiguration> surface_configurations(const std::string& name) {
     using C = SurfaceConfiguration;
-    const auto value = [](double r, double g, double b, double a) { return nlohmann::json{{"value", {r, g, b, a}}}; };
+    const auto value = [](double r, double g, double b, double a) {
+        return nlohmann::json{{"value", {r, g, b, a}}};
+    };
     if (name == "lambertian")
         return {C{"white", {{"reflectance", 1}}, 1, 1, 1.0},
                 C{"coloured", {{"reflectance", {0.7, 0.2, 0.05}}}},
-                C{"textured", {{"reflectance", 1}, {"reflectance_texture", value(0.25, 0.25, 0.25, 1)}}, 1, 1, 0.25}};
+                C{"textured",
+                  {{"reflectance", 1}, {"reflectance_texture", value(0.25, 0.25, 0.25, 1)}},
+                  1,
+                  1,
+                  0.25}};
     if (name == "conductor") {
         const nlohmann::json gold_eta = {0.143, 0.375, 1.442}, gold_k = {3.983, 2.386, 1.603};
-        return {C{"mirror", {{"reflectance", 1}}, 1, 1, 1.0},
-                C{"mirror by default", nlohmann::json::object(), 1, 1.5, 1.0},
-                C{"grey mirror, alpha below the threshold", {{"reflectance", 0.4}, {"alpha", 5e-5}}, 1, 1, 0.4},
-                C{"smooth gold under water", {{"eta", gold_eta}, {"k", gold_k}}, 1.33f, 1},
-                C{"alpha 1e-4", {{"reflectance", 1}, {"alpha", 1e-4}}, 1, 1, {}, 0, 1e-4},
-                C{"alpha .001", {{"reflectance", 1}, {"alpha", 0.001}}, 1, 1, {}, 0, 1e-3},
-                C{"gold, alpha .01", {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.01}}, 1, 1, {}, 0, 0.01},
-                C{"gold, alpha .3", {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.3}}},
-                C{"alpha 1", {{"reflectance", 1}, {"alpha", 1}}},
-                C{"lossless, alpha .01", {{"reflectance", 1}, {"alpha", 0.01}, {"multiscatter", true}}, 1, 1, 1.0, 0.005, 0.01},
-                C{"lossless, alpha .1", {{"reflectance", 1}, {"alpha", 0.1}, {"multiscatter", true}}, 1, 1, 1.0, 0.005},
-                C{"lossless, alpha .4", {{"reflectance", 1}, {"alpha", 0.4}, {"multiscatter", true}}, 1, 1, 1.0, 0.005},
-                C{"lossless, alpha .7", {{"reflectance", 1}, {"alpha", 0.7}, {"multiscatter", true}}, 1, 1, 1.0, 0.005},
-                C{"lossless, alpha 1", {{"reflectance", 1}, {"alpha", 1}, {"multiscatter", true}}, 1, 1, 1.0, 0.005},
-                C{"gold, multiscatter, alpha .5",
-                  {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.5}, {"multiscatter", true}}}};
+        return {
+            C{"mirror", {{"reflectance", 1}}, 1, 1, 1.0},
+            C{"mirror by default", nlohmann::json::object(), 1, 1.5, 1.0},
+            C{"grey mirror, alpha below the threshold", {{"reflectance", 0.4}, {"alpha", 5e-5}}, 1, 1, 0.4},
+            C{"smooth gold under water", {{"eta", gold_eta}, {"k", gold_k}}, 1.33f, 1},
+            C{"alpha 1e-4", {{"reflectance", 1}, {"alpha", 1e-4}}, 1, 1, {}, 0, 1e-4},
+            C{"alpha .001", {{"reflectance", 1}, {"alpha", 0.001}}, 1, 1, {}, 0, 1e-3},
+            C{"gold, alpha .01", {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.01}}, 1, 1, {}, 0, 0.01},
+            C{"gold, alpha .3", {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.3}}},
+            C{"alpha 1", {{"reflectance", 1}, {"alpha", 1}}},
+            C{"lossless, alpha .01",
+              {{"reflectance", 1}, {"alpha", 0.01}, {"multiscatter", true}},
+              1,
+              1,
+              1.0,
+              0.005,
+              0.01},
+            C{"lossless, alpha .1",
+              {{"reflectance", 1}, {"alpha", 0.1}, {"multiscatter", true}},
+              1,
+              1,
+              1.0,
+              0.005},
+            C{"lossless, alpha .4",
+              {{"reflectance", 1}, {"alpha", 0.4}, {"multiscatter", true}},
+              1,
+              1,
+              1.0,
+              0.005},
+            C{"lossless, alpha .7",
+              {{"reflectance", 1}, {"alpha", 0.7}, {"multiscatter", true}},
+              1,
+              1,
+              1.0,
+              0.005},
+            C{"lossless, alpha 1",
+              {{"reflectance", 1}, {"alpha", 1}, {"multiscatter", true}},
+              1,
+              1,
+              1.0,
+              0.005},
+            C{"gold, multiscatter, alpha .5",
+              {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.5}, {"multiscatter", true}}}};
     }
     if (name == "dielectric")
         return {C{"smooth glass", nlohmann::json::object(), 1, 1.5f, 1.0},
@@ -59,34 +94,62 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
                 C{"lossless, alpha .3", {{"alpha", 0.3}, {"multiscatter", true}}, 1, 1.5f, 1.0, 0.005},
                 C{"lossless, alpha .7", {{"alpha", 0.7}, {"multiscatter", true}}, 1, 1.5f, 1.0, 0.005},
                 C{"lossless, alpha 1", {{"alpha", 1}, {"multiscatter", true}}, 1, 1.5f, 1.0, 0.005},
-                C{"water over air, multiscatter, alpha .5", {{"alpha", 0.5}, {"multiscatter", true}}, 1.33f, 1, 1.0, 0.01}};
+                C{"water over air, multiscatter, alpha .5",
+                  {{"alpha", 0.5}, {"multiscatter", true}},
+                  1.33f,
+                  1,
+                  1.0,
+                  0.01}};
     if (name == "thin_dielectric")
         return {C{"pane", nlohmann::json::object(), 1, 1, 1.0}, C{"bubble", {{"ior", 1}}, 1.33f, 1.33f, 1.0}};
     if (name == "absorber") return {C{"absorber", nlohmann::json::object(), 1, 1, 0.0}};
     if (name == "boundary") return {C{"boundary", nlohmann::json::object(), 1.33f, 1, 1.0}};
     if (name == "principled")
-        return {C{"white plastic, smooth", {{"metallic", 0}, {"roughness", 0}}, 1, 1, 1.0},
-                C{"white plastic, roughness .2", {{"metallic", 0}, {"roughness", 0.2}}},
-                C{"plastic, roughness .5", {{"metallic", 0}, {"roughness", 0.5}, {"base_color", {0.8, 0.3, 0.1, 1}}}},
-                C{"white plastic, roughness 1", {{"metallic", 0}, {"roughness", 1}}},
-                C{"ior 2.4, half metal", {{"metallic", 0.5}, {"roughness", 0.6}, {"ior", 2.4}}},
-                C{"copper, roughness .3", {{"roughness", 0.3}, {"base_color", {0.95, 0.6, 0.4, 1}}}},
-                C{"black", {{"metallic", 0}, {"roughness", 0.7}, {"base_color", {0, 0, 0, 1}}}},
-                C{"blended", {{"metallic", 0}, {"roughness", 0.4}, {"alpha_mode", 2}, {"base_color", {0.9, 0.5, 0.2, 0.3}}}},
-                C{"masked out", {{"alpha_mode", 1}, {"base_color", {1, 1, 1, 0.4}}}, 1, 1, 1.0},
-                C{"masked in", {{"alpha_mode", 1}, {"roughness", 0.5}, {"base_color", {0.5, 0.5, 0.5, 0.6}}}},
-                C{"thin, smooth", {{"metallic", 0}, {"roughness", 0}, {"transmission", 1}, {"thin", true}}, 1, 1, 1.0},
-                C{"thin, rough, tinted",
-                  {{"metallic", 0}, {"roughness", 0.5}, {"transmission", 0.7}, {"thin", true}, {"base_color", {1, 0.6, 0.3, 1}}}},
-                C{"solid, smooth", {{"metallic", 0}, {"roughness", 0}, {"transmission", 1}}, 1, 1.5f, 1.0},
-                C{"solid, rough", {{"metallic", 0}, {"roughness", 0.5}, {"transmission", 1}}, 1, 1.5f},
-                C{"solid, half", {{"metallic", 0.1}, {"roughness", 0.6}, {"transmission", 0.5}, {"base_color", {0.4, 0.8, 0.9, 1}}},
-                  1, 1.5f},
-                C{"solid, matched", {{"metallic", 0}, {"roughness", 0.5}, {"transmission", 1}, {"ior", 1}}, 1.2f, 1.2f},
-                C{"textured",
-                  {{"base_color_texture", value(0.5, 0.25, 1, 0.5)}, {"alpha_mode", 2}, {"roughness", 0.8},
-                   {"metallic_roughness_texture", value(0, 0.5, 0.25, 1)}, {"transmission", 1}, {"thin", true},
-                   {"transmission_texture", value(0.5, 0, 0, 1)}}}};
+        return {
+            C{"white plastic, smooth", {{"metallic", 0}, {"roughness", 0}}, 1, 1, 1.0},
+            C{"white plastic, roughness .2", {{"metallic", 0}, {"roughness", 0.2}}},
+            C{"plastic, roughness .5",
+              {{"metallic", 0}, {"roughness", 0.5}, {"base_color", {0.8, 0.3, 0.1, 1}}}},
+            C{"white plastic, roughness 1", {{"metallic", 0}, {"roughness", 1}}},
+            C{"ior 2.4, half metal", {{"metallic", 0.5}, {"roughness", 0.6}, {"ior", 2.4}}},
+            C{"copper, roughness .3", {{"roughness", 0.3}, {"base_color", {0.95, 0.6, 0.4, 1}}}},
+            C{"black", {{"metallic", 0}, {"roughness", 0.7}, {"base_color", {0, 0, 0, 1}}}},
+            C{"blended",
+              {{"metallic", 0}, {"roughness", 0.4}, {"alpha_mode", 2}, {"base_color", {0.9, 0.5, 0.2, 0.3}}}},
+            C{"masked out", {{"alpha_mode", 1}, {"base_color", {1, 1, 1, 0.4}}}, 1, 1, 1.0},
+            C{"masked in", {{"alpha_mode", 1}, {"roughness", 0.5}, {"base_color", {0.5, 0.5, 0.5, 0.6}}}},
+            C{"thin, smooth",
+              {{"metallic", 0}, {"roughness", 0}, {"transmission", 1}, {"thin", true}},
+              1,
+              1,
+              1.0},
+            C{"thin, rough, tinted",
+              {{"metallic", 0},
+               {"roughness", 0.5},
+               {"transmission", 0.7},
+               {"thin", true},
+               {"base_color", {1, 0.6, 0.3, 1}}}},
+            C{"solid, smooth", {{"metallic", 0}, {"roughness", 0}, {"transmission", 1}}, 1, 1.5f, 1.0},
+            C{"solid, rough", {{"metallic", 0}, {"roughness", 0.5}, {"transmission", 1}}, 1, 1.5f},
+            C{"solid, half",
+              {{"metallic", 0.1},
+               {"roughness", 0.6},
+               {"transmission", 0.5},
+               {"base_color", {0.4, 0.8, 0.9, 1}}},
+              1,
+              1.5f},
+            C{"solid, matched",
+              {{"metallic", 0}, {"roughness", 0.5}, {"transmission", 1}, {"ior", 1}},
+              1.2f,
+              1.2f},
+            C{"textured",
+              {{"base_color_texture", value(0.5, 0.25, 1, 0.5)},
+               {"alpha_mode", 2},
+               {"roughness", 0.8},
+               {"metallic_roughness_texture", value(0, 0.5, 0.25, 1)},
+               {"transmission", 1},
+               {"thin", true},
+               {"transmission_texture", value(0.5, 0, 0, 1)}}}};
     return {};
 }
 

@@ -1,6 +1,6 @@
-// Every class of surface, on the device: its sampler against its density, its weights against its values, energy,
-// reciprocity and the relation of the two transport directions. Classes come from the registry; one without a
-// configuration in surface_configurations.h fails.
+// Every class of surface, on the device: its sampler against its density, its weights against its values,
+// energy, reciprocity and the relation of the two transport directions. Classes come from the registry; one
+// without a configuration in surface_configurations.h fails.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,8 +28,9 @@ glm::vec3 direction(double cosine, double azimuth) {
 }
 
 const std::vector<glm::vec3>& outgoing_directions() {
-    static const std::vector<glm::vec3> result = {direction(1, 0),      direction(0.7, 1.2),  direction(0.25, 2.0),
-                                                  direction(0.02, 1.0), direction(-0.85, 4.2), direction(-0.3, 1.9)};
+    static const std::vector<glm::vec3> result = {direction(1, 0),       direction(0.7, 1.2),
+                                                  direction(0.25, 2.0),  direction(0.02, 1.0),
+                                                  direction(-0.85, 4.2), direction(-0.3, 1.9)};
     return result;
 }
 
@@ -40,17 +41,17 @@ struct Measurement {
     glm::vec3 wo;
     SurfaceSurroundings at;
     bool is_delta;
-    size_t bad_values = 0;            // not finite, or negative
-    double worst_weight = 0;          // weight pdf against eval, relative, at the 99.9 % quantile of the samples
-    double worst_pdf = 0;             // pdf of the sample against pdf
-    double density = 0;               // integral of pdf
-    double discrete = 0;              // probabilities of the delta directions
-    double absorbed = 0;              // part of the samples with no direction
-    ChiSquared fit;                   // of the samples over the cells
-    glm::dvec3 albedo{0};             // power, by quadrature of eval and the delta weights
+    size_t bad_values = 0;    // not finite, or negative
+    double worst_weight = 0;  // weight pdf against eval, relative, at the 99.9 % quantile of the samples
+    double worst_pdf = 0;     // pdf of the sample against pdf
+    double density = 0;       // integral of pdf
+    double discrete = 0;      // probabilities of the delta directions
+    double absorbed = 0;      // part of the samples with no direction
+    ChiSquared fit;           // of the samples over the cells
+    glm::dvec3 albedo{0};     // power, by quadrature of eval and the delta weights
     glm::dvec3 sampled_albedo{0}, sampled_error{0};  // mean weight as power, its standard error
     glm::dvec3 straight{0}, transparency{0};
-    bool quadrature_of_zero = true;   // no value of eval was above zero
+    bool quadrature_of_zero = true;  // no value of eval was above zero
 };
 
 // What radiance is to be multiplied with to become power.
@@ -76,12 +77,14 @@ double high_quantile(std::vector<double> values) {
 
 void count_samples(Measurement& m, const SurfaceSamples& drawn, const SphereCells& cells,
                    const std::vector<glm::dvec4>& integrals) {
-    std::vector<double> observed(cells.size() + 3, 0), expected(cells.size() + 3, 0), weight_errors, pdf_errors;
+    std::vector<double> observed(cells.size() + 3, 0), expected(cells.size() + 3, 0), weight_errors,
+        pdf_errors;
     Moments power[3];
     size_t absorbed = 0;
     for (uint32_t i = pilot_count; i < drawn.samples.size(); ++i) {
         const SurfaceSample& s = drawn.samples[i];
-        if (!acceptable(s.weight) || !acceptable(s.pdf) || !acceptable(s.value) || !acceptable(s.value_pdf)) m.bad_values++;
+        if (!acceptable(s.weight) || !acceptable(s.pdf) || !acceptable(s.value) || !acceptable(s.value_pdf))
+            m.bad_values++;
         // What goes straight on is not refracted: radiance and power are the same.
         const bool straight = s.event & event_straight;
         const double scale = straight ? 1 : power_scale(m.at, m.wo, s.wi);
@@ -97,14 +100,16 @@ void count_samples(Measurement& m, const SurfaceSamples& drawn, const SphereCell
             observed[cells.find(s.wi)]++;
             weight_errors.push_back(0);
             for (int k = 0; k < 3; ++k)
-                weight_errors.back() = std::max(weight_errors.back(), relative_difference(double(s.weight[k]) * s.pdf, s.value[k]));
+                weight_errors.back() = std::max(weight_errors.back(),
+                                                relative_difference(double(s.weight[k]) * s.pdf, s.value[k]));
             pdf_errors.push_back(relative_difference(s.pdf, s.value_pdf));
         }
     }
     const double n = double(drawn.samples.size() - pilot_count);
     m.absorbed = double(absorbed) / n;
     m.worst_weight = high_quantile(weight_errors), m.worst_pdf = high_quantile(pdf_errors);
-    for (int k = 0; k < 3; ++k) m.sampled_albedo[k] = power[k].mean, m.sampled_error[k] = power[k].standard_error();
+    for (int k = 0; k < 3; ++k)
+        m.sampled_albedo[k] = power[k].mean, m.sampled_error[k] = power[k].standard_error();
     for (size_t i = 0; i < cells.size(); ++i) expected[i] = integrals[i].w, m.density += integrals[i].w;
     for (size_t i = cells.size(); i < expected.size(); ++i) m.discrete += expected[i];
     for (double& e : expected) e *= (n - double(absorbed)) / std::max(m.density + m.discrete, 1e-12);
@@ -114,17 +119,20 @@ void count_samples(Measurement& m, const SurfaceSamples& drawn, const SphereCell
     // The part of every delta direction in the albedo.
     for (const uint32_t kind : {0u, 1u, 2u})
         for (const SurfaceSample& s : drawn.samples)
-            if ((s.event & event_delta) && kind == (s.event & event_straight ? 2u : s.event & event_transmit ? 1u : 0u)) {
-                m.albedo += glm::dvec3(s.weight) * double(s.pdf) *
-                            (kind == 2 ? 1 : power_scale(m.at, m.wo, s.wi));
+            if ((s.event & event_delta) && kind == (s.event & event_straight   ? 2u
+                                                    : s.event & event_transmit ? 1u
+                                                                               : 0u)) {
+                m.albedo +=
+                    glm::dvec3(s.weight) * double(s.pdf) * (kind == 2 ? 1 : power_scale(m.at, m.wo, s.wi));
                 break;
             }
 }
 
-Measurement measure(SurfaceProbe& probe, size_t record, const SurfaceConfiguration& configuration, const std::string& name,
-                    glm::vec3 wo, bool importance) {
+Measurement measure(SurfaceProbe& probe, size_t record, const SurfaceConfiguration& configuration,
+                    const std::string& name, glm::vec3 wo, bool importance) {
     Measurement m;
-    m.label = fmt::format("{}, {}, wo.z {:.2g}, {}", name, configuration.label, wo.z, importance ? "power" : "radiance");
+    m.label = fmt::format("{}, {}, wo.z {:.2g}, {}", name, configuration.label, wo.z,
+                          importance ? "power" : "radiance");
     m.configuration = &configuration;
     m.wo = wo;
     m.at = {configuration.ior_above, configuration.ior_below, importance};
@@ -133,7 +141,8 @@ Measurement measure(SurfaceProbe& probe, size_t record, const SurfaceConfigurati
     m.transparency = drawn.transparency;
     std::vector<glm::vec3> pilot;
     for (uint32_t i = 0; i < pilot_count; ++i)
-        if (drawn.samples[i].event && !(drawn.samples[i].event & event_delta)) pilot.push_back(drawn.samples[i].wi);
+        if (drawn.samples[i].event && !(drawn.samples[i].event & event_delta))
+            pilot.push_back(drawn.samples[i].wi);
     const SphereCells cells(pilot, pilot_count, configuration.width < 0.05 ? 24 : 128);
     const auto integrals = cells.integrate(
         [&](std::span<const glm::vec3> wis) {
@@ -149,7 +158,8 @@ Measurement measure(SurfaceProbe& probe, size_t record, const SurfaceConfigurati
         },
         quadrature_tolerance);
     for (size_t i = 0; i < cells.size(); ++i)
-        m.albedo += glm::dvec3(integrals[i]) * power_scale(m.at, wo, glm::vec3(0, 0, cells[i].above() ? 1 : -1));
+        m.albedo +=
+            glm::dvec3(integrals[i]) * power_scale(m.at, wo, glm::vec3(0, 0, cells[i].above() ? 1 : -1));
     count_samples(m, drawn, cells, integrals);
     return m;
 }
@@ -199,8 +209,8 @@ const std::vector<Measurement>& measurements() {
     return result;
 }
 
-// How well values computed in single precision from directions agree: directions are off by some 1e-7, lobes turn that
-// into a relative error by their width.
+// How well values computed in single precision from directions agree: directions are off by some 1e-7, lobes
+// turn that into a relative error by their width.
 double rounding_tolerance(const SurfaceConfiguration& c) { return 2e-4 + 1e-5 / c.width; }
 
 }  // namespace
@@ -248,7 +258,9 @@ TEST_CASE("surface weights times pdf are the values, and sample and pdf agree") 
 TEST_CASE("no surface sends out more power than reaches it") {
     for (const Measurement& m : measurements()) {
         INFO(m.label, ": ", m.albedo.x, " ", m.albedo.y, " ", m.albedo.z);
-        const double limit = 1 + std::max(5e-4, m.configuration->albedo.value_or(0) == 1 ? m.configuration->albedo_tolerance : 0);
+        const double limit =
+            1 +
+            std::max(5e-4, m.configuration->albedo.value_or(0) == 1 ? m.configuration->albedo_tolerance : 0);
         CHECK(std::max({m.albedo.x, m.albedo.y, m.albedo.z}) < limit);
     }
 }
@@ -257,8 +269,10 @@ TEST_CASE("the mean weight of surface samples is the directional albedo found by
     const double level = sidak_level(false_alarm, 3 * measurements().size());
     for (const Measurement& m : measurements())
         for (int k = 0; k < 3; ++k) {
-            INFO(m.label, ": ", m.sampled_albedo[k], " +- ", m.sampled_error[k], ", quadrature ", m.albedo[k]);
-            CHECK(z_test(m.sampled_albedo[k], m.albedo[k], m.sampled_error[k], 1e-3 * m.albedo[k] + 1e-6) > level);
+            INFO(m.label, ": ", m.sampled_albedo[k], " +- ", m.sampled_error[k], ", quadrature ",
+                 m.albedo[k]);
+            CHECK(z_test(m.sampled_albedo[k], m.albedo[k], m.sampled_error[k], 1e-3 * m.albedo[k] + 1e-6) >
+                  level);
         }
 }
 
@@ -267,7 +281,8 @@ TEST_CASE("surfaces of known albedo have it in every direction") {
         if (!m.configuration->albedo) continue;
         INFO(m.label, ": ", m.albedo.x, " ", m.albedo.y, " ", m.albedo.z);
         const double tolerance = m.configuration->albedo_tolerance;
-        for (int k = 0; k < 3; ++k) CHECK(std::abs(m.albedo[k] - *m.configuration->albedo) < tolerance + 1e-4);
+        for (int k = 0; k < 3; ++k)
+            CHECK(std::abs(m.albedo[k] - *m.configuration->albedo) < tolerance + 1e-4);
     }
 }
 
@@ -285,7 +300,9 @@ TEST_CASE("a surface is delta exactly where it has no values") {
     }
 }
 
-TEST_CASE("surfaces are reciprocal, with radiance over squared index, and forward paths are adjoint to backward ones") {
+TEST_CASE(
+    "surfaces are reciprocal, with radiance over squared index, and forward paths are adjoint to backward "
+    "ones") {
     for (TestedClass& c : tested_classes())
         for (size_t i = 0; i < c.configurations.size(); ++i) {
             const SurfaceConfiguration& configuration = c.configurations[i];
@@ -296,9 +313,11 @@ TEST_CASE("surfaces are reciprocal, with radiance over squared index, and forwar
                 for (const SurfaceSample& s : c.probe->sample(i, radiance, wo, 1024, 3).samples)
                     if (s.event && !(s.event & event_delta)) pairs.push_back({wo, s.wi});
             for (int k = 0; k < 2048; ++k)  // pairs that the sampler may never give
-                pairs.push_back({direction(std::sin(k * 1.1), k * 2.3), direction(std::sin(k * 1.7), k * 0.7)});
+                pairs.push_back(
+                    {direction(std::sin(k * 1.1), k * 2.3), direction(std::sin(k * 1.7), k * 0.7)});
             for (const DirectionPair& p : pairs) swapped.push_back({p.wi, p.wo});
-            const auto there = c.probe->evaluate(i, radiance, pairs), back = c.probe->evaluate(i, radiance, swapped);
+            const auto there = c.probe->evaluate(i, radiance, pairs),
+                       back = c.probe->evaluate(i, radiance, swapped);
             const auto carried = c.probe->evaluate(i, power, pairs);
             std::vector<double> reciprocity, adjoint;
             for (size_t k = 0; k < pairs.size(); ++k) {
@@ -306,8 +325,10 @@ TEST_CASE("surfaces are reciprocal, with radiance over squared index, and forwar
                 const double n_o = wo > 0 ? radiance.ior_above : radiance.ior_below;
                 const double n_i = wi > 0 ? radiance.ior_above : radiance.ior_below;
                 for (int channel = 0; channel < 3; ++channel) {
-                    const double a = there[k].f_cos[channel] / std::abs(wi), b = back[k].f_cos[channel] / std::abs(wo);
-                    reciprocity.push_back(std::max(a, b) < 1e-9 ? 0 : relative_difference(a / (n_o * n_o), b / (n_i * n_i)));
+                    const double a = there[k].f_cos[channel] / std::abs(wi),
+                                 b = back[k].f_cos[channel] / std::abs(wo);
+                    reciprocity.push_back(
+                        std::max(a, b) < 1e-9 ? 0 : relative_difference(a / (n_o * n_o), b / (n_i * n_i)));
                     const double forward = carried[k].f_cos[channel] / std::abs(wi);
                     adjoint.push_back(std::max(b, forward) < 1e-9 ? 0 : relative_difference(forward, b));
                 }

@@ -46,7 +46,8 @@ std::vector<glm::dvec4> gauss(const Integrand& integrand, const std::vector<Sphe
 
 }  // namespace
 
-SphereCells::SphereCells(std::span<const glm::vec3> points, size_t draws, size_t least) : point_count_(draws) {
+SphereCells::SphereCells(std::span<const glm::vec3> points, size_t draws, size_t least)
+    : point_count_(draws) {
     std::vector<Coordinates> above, below;
     for (glm::vec3 w : points) {
         const auto c = coordinates(w);
@@ -89,7 +90,8 @@ size_t SphereCells::build(std::vector<Coordinates> points, SphereCell cell, int 
 size_t SphereCells::find(glm::vec3 direction) const {
     const auto c = coordinates(direction);
     size_t node = root_;
-    while (nodes_[node].axis >= 0) node = nodes_[node].children[c[nodes_[node].axis] < nodes_[node].at ? 0 : 1];
+    while (nodes_[node].axis >= 0)
+        node = nodes_[node].children[c[nodes_[node].axis] < nodes_[node].at ? 0 : 1];
     return nodes_[node].children[0];
 }
 
@@ -123,7 +125,8 @@ std::vector<glm::dvec4> SphereCells::integrate(const Integrand& integrand, doubl
             const glm::dvec4 d = glm::abs(sum - p.coarse);
             const bool settled = std::max({d.x, d.y, d.z, d.w}) <= tolerance;
             const double found = sum.w * double(point_count_), there = double(p.points.size());
-            const bool missed = found < 0.1 * there || (depth < 3 && std::abs(found - there) > 2.5 * std::sqrt(there));
+            const bool missed =
+                found < 0.1 * there || (depth < 3 && std::abs(found - there) > 2.5 * std::sqrt(there));
             if (last || (settled && !missed)) {
                 result[p.owner] += sum;
                 continue;
@@ -131,8 +134,8 @@ std::vector<glm::dvec4> SphereCells::integrate(const Integrand& integrand, doubl
             for (size_t k = 4 * i; k < 4 * i + 4; ++k) {
                 Part child{children[k], p.owner, fine[k], {}};
                 for (const Coordinates& point : p.points)
-                    if (point[0] >= child.cell.t0 && point[0] < child.cell.t1 && point[1] >= child.cell.phi0 &&
-                        point[1] < child.cell.phi1)
+                    if (point[0] >= child.cell.t0 && point[0] < child.cell.t1 &&
+                        point[1] >= child.cell.phi0 && point[1] < child.cell.phi1)
                         child.points.push_back(point);
                 next.push_back(std::move(child));
             }

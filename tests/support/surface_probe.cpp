@@ -37,7 +37,8 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     const ClassInfo* info = registry.find(Interface::surface, class_name);
     REQUIRE(info);
     ShaderSources sources = registry.sources();
-    sources.generated["generated/surface_classes.glsl"] = class_header(interface_info(Interface::surface), {info});
+    sources.generated["generated/surface_classes.glsl"] =
+        class_header(interface_info(Interface::surface), {info});
 
     // Textures of one value, in place of images.
     std::vector<glm::vec4> textures;
@@ -55,8 +56,8 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     for (uint32_t i = 0; i < parameters.size(); ++i) refs_.push_back(records.ref(*info, i));
     std::string texture_text = "vec4 texture_value(TextureRef ref, vec2 uv0, vec2 uv1) {\n";
     for (size_t i = 0; i < textures.size(); ++i)
-        texture_text += fmt::format("if (ref.index == {}u) return vec4({}, {}, {}, {});\n", i, textures[i].x, textures[i].y,
-                                    textures[i].z, textures[i].w);
+        texture_text += fmt::format("if (ref.index == {}u) return vec4({}, {}, {}, {});\n", i, textures[i].x,
+                                    textures[i].y, textures[i].z, textures[i].w);
     sources.generated["lib/textures.glsl"] = texture_text + "return vec4(1);\n}\n";
 
     Device& device = test_device();
@@ -66,21 +67,31 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     pairs_ = Buffer(device, max_count * sizeof(DirectionPair), "direction pairs");
     values_ = Buffer(device, max_count * sizeof(SurfaceValue), "surface values");
     const std::string block = std::string(interface_info(Interface::surface).buffer) + "__" + class_name;
-    BufferTable table{{block, &records_}, {interface_info(Interface::surface).buffer, &records_},
-                      {"Samples", &samples_}, {"Answers", &answers_}, {"Pairs", &pairs_}, {"Values", &values_}};
+    BufferTable table{{block, &records_},     {interface_info(Interface::surface).buffer, &records_},
+                      {"Samples", &samples_}, {"Answers", &answers_},
+                      {"Pairs", &pairs_},     {"Values", &values_}};
     sample_ = probe_kernel(sources, "sample_surface.comp", table);
     evaluate_ = probe_kernel(sources, "evaluate_surface.comp", table);
 }
 
-SurfaceSamples SurfaceProbe::sample(size_t record, const SurfaceSurroundings& at, glm::vec3 wo, uint32_t count,
-                                    uint32_t seed) {
+SurfaceSamples SurfaceProbe::sample(size_t record, const SurfaceSurroundings& at, glm::vec3 wo,
+                                    uint32_t count, uint32_t seed) {
     REQUIRE(count <= max_count);
     CommandList list(test_device());
     list.dispatch(sample_, groups(count),
-                  {{"count", count}, {"seed", seed}, {"surface", refs_.at(record)}, {"wo_x", wo.x}, {"wo_y", wo.y},
-                   {"wo_z", wo.z}, {"ior_above", at.ior_above}, {"ior_below", at.ior_below},
-                   {"importance", uint32_t(at.importance)}, {"color_r", at.color.x}, {"color_g", at.color.y},
-                   {"color_b", at.color.z}, {"color_a", at.color.w}});
+                  {{"count", count},
+                   {"seed", seed},
+                   {"surface", refs_.at(record)},
+                   {"wo_x", wo.x},
+                   {"wo_y", wo.y},
+                   {"wo_z", wo.z},
+                   {"ior_above", at.ior_above},
+                   {"ior_below", at.ior_below},
+                   {"importance", uint32_t(at.importance)},
+                   {"color_r", at.color.x},
+                   {"color_g", at.color.y},
+                   {"color_b", at.color.z},
+                   {"color_a", at.color.w}});
     list.run();
     const glm::vec4 answer = answers_.read_array<glm::vec4>(1)[0];
     return {samples_.read_array<SurfaceSample>(count), glm::vec3(answer), answer.w != 0.0f};
@@ -94,9 +105,15 @@ std::vector<SurfaceValue> SurfaceProbe::evaluate(size_t record, const SurfaceSur
         pairs_.write(part.data(), part.size_bytes());
         CommandList list(test_device());
         list.dispatch(evaluate_, groups(part.size()),
-                      {{"count", uint32_t(part.size())}, {"surface", refs_.at(record)}, {"ior_above", at.ior_above},
-                       {"ior_below", at.ior_below}, {"importance", uint32_t(at.importance)}, {"color_r", at.color.x},
-                       {"color_g", at.color.y}, {"color_b", at.color.z}, {"color_a", at.color.w}});
+                      {{"count", uint32_t(part.size())},
+                       {"surface", refs_.at(record)},
+                       {"ior_above", at.ior_above},
+                       {"ior_below", at.ior_below},
+                       {"importance", uint32_t(at.importance)},
+                       {"color_r", at.color.x},
+                       {"color_g", at.color.y},
+                       {"color_b", at.color.z},
+                       {"color_a", at.color.w}});
         list.run();
         const auto values = values_.read_array<SurfaceValue>(part.size());
         result.insert(result.end(), values.begin(), values.end());

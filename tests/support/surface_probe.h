@@ -1,4 +1,5 @@
-// Surfaces of one registered class on the device, asked through the interface of shaders/interfaces/surface_optics.glsl.
+// Surfaces of one registered class on the device, asked through the interface of
+// shaders/interfaces/surface_optics.glsl.
 #pragma once
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
@@ -44,10 +45,14 @@ struct SurfaceValue {
 
 class SurfaceProbe {
   public:
-    // One record for each of `parameters`. A texture parameter is {"value": [r, g, b, a]}: the same everywhere.
-    SurfaceProbe(ClassRegistry& registry, const std::string& class_name, const std::vector<nlohmann::json>& parameters);
-    SurfaceSamples sample(size_t record, const SurfaceSurroundings& at, glm::vec3 wo, uint32_t count, uint32_t seed);
-    std::vector<SurfaceValue> evaluate(size_t record, const SurfaceSurroundings& at, std::span<const DirectionPair> pairs);
+    // One record for each of `parameters`. A texture parameter is {"value": [r, g, b, a]}: the same
+    // everywhere.
+    SurfaceProbe(ClassRegistry& registry, const std::string& class_name,
+                 const std::vector<nlohmann::json>& parameters);
+    SurfaceSamples sample(size_t record, const SurfaceSurroundings& at, glm::vec3 wo, uint32_t count,
+                          uint32_t seed);
+    std::vector<SurfaceValue> evaluate(size_t record, const SurfaceSurroundings& at,
+                                       std::span<const DirectionPair> pairs);
 
   private:
     Buffer records_, samples_, answers_, pairs_, values_;
