@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
 #include <thread>
 
 #include "host/error.h"
 #include "host/scene/image_file.h"
 #include "host/scene/light_tree.h"
 #include "host/scene/texture_pack.h"
+#include "host/scene/unrolled_traversal.h"
 
 namespace etendue {
 namespace {
@@ -60,6 +62,8 @@ class SceneCompiler {
         add_media();
         add_materials();
         add_geometry();
+        if (world_.bounds.empty() && !in_.environment && options_.environment.empty())
+            fail_input("{}: the scene is empty: it has neither geometry nor an environment", in_.file.string());
         add_receivers();
         add_lights();
         add_textures();
@@ -145,15 +149,36 @@ class SceneCompiler {
             }
             if (m.emission) fill_emission(*m.emission, record);
             surfaces.push_back(add_record(Interface::surface, m.surface));
-            // A class file that never mentions EVENT_STRAIGHT lets nothing pass straight on.
-            const bool may_pass = out_.sources.find(surfaces.back().info->file).value_or("EVENT_STRAIGHT").find("EVENT_STRAIGHT") != std::string::npos;
-            if (!may_pass) record.flags |= opaque;
-            else out_.features.straight = true;
             materials_.push_back(record);
         }
         const auto refs = references(Interface::surface, surfaces);
         for (size_t i = 0; i < refs.size(); ++i) materials_[i].surface = refs[i];
         out_.materials = materials_.size();
+        ask_opacity();
+    }
+
+    void ask_opacity() {
+        if (materials_.empty()) return;
+        const uint32_t count = uint32_t(materials_.size());
+        write_headers();
+        upload("SurfaceRecords", records_[Interface::surface].bytes());
+        upload("MediumRecords", records_[Interface::medium].bytes());
+        upload("Materials", materials_);
+        const Buffer out(device_, count * 4, "MaterialOpacity");
+        run_once("kernels/measure_materials.comp", count, {{"MaterialOpacity", &out}}, {{"count", count}});
+        const auto is_opaque = out.read_array<uint32_t>(count);
+        for (uint32_t i = 0; i < count; ++i) {
+            if (is_opaque[i]) materials_[i].flags |= opaque;
+            else out_.features.straight = true;
+        }
+    }
+
+    // One dispatch of a kernel that asks the classes something, a lane an item.
+    void run_once(const std::string& file, uint32_t items, const BufferTable& buffers, std::initializer_list<PushValue> values) {
+        const Kernel kernel = make_kernel(device_, out_, file, buffers);
+        CommandList list(device_);
+        list.dispatch(kernel, (items + kernel.group_size() - 1) / kernel.group_size(), values);
+        list.run();
     }
 
     void fill_emission(const EmissionDescription& e, MaterialRecord& record) {
@@ -193,6 +218,9 @@ class SceneCompiler {
         for (const PlacedObject& shape : in_.shapes) shapes.push_back(add_record(Interface::geometry, shape.object));
         const auto refs = references(Interface::geometry, shapes);
         world_ = build_world(in_, shape_bounds(refs), refs, threads_, out_.features);
+        const UnrolledTraversal unrolled = unroll_traversal(world_, in_);
+        out_.features.unrolled_traversal = !unrolled.glsl.empty();
+        out_.sources.generated["generated/unrolled_traversal.glsl"] = unrolled.glsl;
         out_.center = world_.center;
         out_.radius = world_.bounds.empty() ? 0.0f : 0.5f * glm::length(world_.bounds.hi - world_.bounds.lo);
         out_.triangles = world_.triangles, out_.instances = world_.instances, out_.shapes = in_.shapes.size();
@@ -203,16 +231,12 @@ class SceneCompiler {
     // The classes themselves say how large their objects are: on the device, so that a class needs no host code.
     std::vector<Box> shape_bounds(const std::vector<uint32_t>& refs) {
         if (refs.empty()) return {};
-        Scene& scene = out_;
         write_headers();
         upload("GeometryRecords", records_[Interface::geometry].bytes());
         const Buffer in = create_buffer(device_, refs, "ShapeRefs");
         const Buffer out(device_, refs.size() * 24, "ShapeBounds");
-        const Kernel kernel = make_kernel(device_, scene, "kernels/bound_shapes.comp", {{"ShapeRefs", &in}, {"ShapeBounds", &out}});
-        CommandList list(device_);
-        list.dispatch(kernel, uint32_t((refs.size() + kernel.group_size() - 1) / kernel.group_size()),
-                      {{"count", uint32_t(refs.size())}});
-        list.run();
+        run_once("kernels/bound_shapes.comp", uint32_t(refs.size()), {{"ShapeRefs", &in}, {"ShapeBounds", &out}},
+                 {{"count", uint32_t(refs.size())}});
         const auto corners = out.read_array<glm::vec3>(2 * refs.size());
         std::vector<Box> boxes;
         for (size_t i = 0; i < refs.size(); ++i) boxes.push_back({corners[2 * i], corners[2 * i + 1]});
@@ -227,6 +251,15 @@ class SceneCompiler {
             object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
             added.push_back(add_record(Interface::receiver, object, recentred(out_, receiver.world_from_local)));
             out_.receivers.push_back({receiver.name, no_record, aspect});
+        }
+        if (in_.receivers.empty() && out_.radius > 0) {
+            // glTF leaves the view to the program where a file has no camera: the whole scene from the front, a little above.
+            const double yfov = 0.6;
+            const glm::dvec3 from = glm::normalize(glm::dvec3(0.35, 0.25, 1.0)) * (double(out_.radius) / std::sin(yfov / 2));
+            const glm::dmat4 placement = glm::inverse(glm::lookAt(from, glm::dvec3(0), glm::dvec3(0, 1, 0)));
+            added.push_back(add_record(Interface::receiver, {"perspective", {{"yfov", yfov}}, ""}, placement));
+            out_.receivers.push_back({"(default)", no_record, 0});
+            out_.warnings.push_back(fmt::format("{}: the scene has no camera: all of it is shown from the front", in_.file.string()));
         }
         const auto refs = references(Interface::receiver, added);
         for (size_t i = 0; i < refs.size(); ++i) out_.receivers[i].ref = refs[i];
@@ -346,12 +379,9 @@ class SceneCompiler {
 
     std::vector<LightBounds> run_measurement() {
         const Buffer out(device_, lights_.size() * sizeof(LightBounds), "LightBoundsTable");
-        const Kernel kernel = make_kernel(device_, out_, "kernels/measure_lights.comp", {{"LightBoundsTable", &out}});
-        CommandList list(device_);
         const uint32_t count = uint32_t(lights_.size());
-        list.dispatch(kernel, (count + kernel.group_size() - 1) / kernel.group_size(),
-                      {{"light_count", count}, {"scene_radius", out_.radius}});
-        list.run();
+        run_once("kernels/measure_lights.comp", count, {{"LightBoundsTable", &out}},
+                 {{"light_count", count}, {"scene_radius", out_.radius}});
         return out.read_array<LightBounds>(count);
     }
 

@@ -10,6 +10,8 @@
 //   Spectrum   NAME_transparency(R r, SurfaceContext c, vec3 wo)     part that passes straight on, unscattered
 //   bool       NAME_is_delta(R r, SurfaceContext c)                  eval is zero for every pair of directions; may say
 //                                                                   false where only a texture makes it so
+//   bool       NAME_is_opaque(R r, SurfaceContext c)                 transparency is zero in every direction, whatever the
+//                                                                   textures and colors
 //
 // wo is the direction where the path comes from, wi where it goes. c.importance tells the transport direction: false
 // carries radiance (backward rays: transmission scales by (ior_i / ior_o)², Veach 1997 eq. 5.12), true carries power.
@@ -114,6 +116,16 @@ bool surface_is_delta(uint ref, SurfaceContext c) {
     bool result = true;
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_is_delta(name##_record(record_index(ref)), c); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+bool surface_is_opaque(uint ref, SurfaceContext c) {
+    bool result = true;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_is_opaque(name##_record(record_index(ref)), c); break;
         SURFACE_CLASSES(CASE)
 #undef CASE
     }

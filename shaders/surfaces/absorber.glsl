@@ -10,3 +10,4 @@ float absorber_pdf(Absorber r, SurfaceContext c, vec3 wo, vec3 wi) { return 0.0;
 BsdfSample absorber_sample(Absorber r, SurfaceContext c, vec3 wo, vec3 u) { return no_bsdf_sample(); }
 Spectrum absorber_transparency(Absorber r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
 bool absorber_is_delta(Absorber r, SurfaceContext c) { return true; }
+bool absorber_is_opaque(Absorber r, SurfaceContext c) { return true; }

@@ -14,3 +14,4 @@ BsdfSample boundary_sample(Boundary r, SurfaceContext c, vec3 wo, vec3 u) {
 
 Spectrum boundary_transparency(Boundary r, SurfaceContext c, vec3 wo) { return Spectrum(1); }
 bool boundary_is_delta(Boundary r, SurfaceContext c) { return true; }
+bool boundary_is_opaque(Boundary r, SurfaceContext c) { return false; }

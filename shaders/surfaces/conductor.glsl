@@ -84,3 +84,4 @@ BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {
 
 Spectrum conductor_transparency(Conductor r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
 bool conductor_is_delta(Conductor r, SurfaceContext c) { return r.alpha < SMOOTH_ALPHA; }
+bool conductor_is_opaque(Conductor r, SurfaceContext c) { return true; }

@@ -112,3 +112,4 @@ BsdfSample dielectric_sample(Dielectric r, SurfaceContext c, vec3 wo, vec3 u) {
 Spectrum dielectric_transparency(Dielectric r, SurfaceContext c, vec3 wo) {
     return Spectrum(c.ior_above == c.ior_below ? 1.0 : 0.0);
 }
+bool dielectric_is_opaque(Dielectric r, SurfaceContext c) { return c.ior_above != c.ior_below; }

@@ -27,3 +27,4 @@ BsdfSample lambertian_sample(Lambertian r, SurfaceContext c, vec3 wo, vec3 u) {
 
 Spectrum lambertian_transparency(Lambertian r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
 bool lambertian_is_delta(Lambertian r, SurfaceContext c) { return false; }
+bool lambertian_is_opaque(Lambertian r, SurfaceContext c) { return true; }

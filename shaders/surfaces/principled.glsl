@@ -227,3 +227,4 @@ bool principled_is_delta(Principled r, SurfaceContext c) {
     PrincipledMaterial m = principled_material(r, c, 1.0);
     return textures == NO_RECORD && (m.coverage == 0.0 || (m.smooth_facets && m.opaque == 0.0));
 }
+bool principled_is_opaque(Principled r, SurfaceContext c) { return r.alpha_mode == 0u && r.transmission == 0.0; }

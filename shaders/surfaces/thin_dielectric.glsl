@@ -29,3 +29,4 @@ Spectrum thin_dielectric_transparency(ThinDielectric r, SurfaceContext c, vec3 w
 }
 
 bool thin_dielectric_is_delta(ThinDielectric r, SurfaceContext c) { return true; }
+bool thin_dielectric_is_opaque(ThinDielectric r, SurfaceContext c) { return false; }
