@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Installs what is missing and builds: tools/build.sh [PRESET], release by default. The program is build/PRESET/etendue.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+preset=${1:-release}
+tools/setup.sh
+cmake --preset "$preset" >/dev/null
+cmake --build --preset "$preset"

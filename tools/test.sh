@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Sets up, builds, and runs the tests.
+#
+#   tools/test.sh             the suite
+#   tools/test.sh long        the longer statistical runs, too
+#   tools/test.sh drivers     the device tests again on Mesa 22.3 and SwiftShader, unpacked beside the installed driver
+set -euo pipefail
+cd "$(dirname "$0")/.."
+tools/build.sh release
+case "${1:-}" in
+    "") ctest --test-dir build/release --output-on-failure -LE long ;;
+    long) ctest --test-dir build/release --output-on-failure ;;
+    drivers)
+        tools/setup.sh --drivers
+        for driver in mesa22 swiftshader; do
+            echo "== $driver"
+            VK_DRIVER_FILES=$PWD/build/drivers/$driver/icd.json VK_ICD_FILENAMES=$PWD/build/drivers/$driver/icd.json \
+                ctest --test-dir build/release --output-on-failure -L device -LE long
+        done ;;
+    *) echo "usage: tools/test.sh [long|drivers]" >&2; exit 2 ;;
+esac
