@@ -1,8 +1,9 @@
-// The scene importer: a glTF 2.0 file (.gltf or .glb), with the extension ETD_optics, becomes a SceneDescription.
+// The scene importer: a glTF 2.0 file (.gltf or .glb), with the extension ETD_optics, becomes a
+// SceneDescription.
 //
-// Everything that the file says is checked here, so that later stages meet indices in range, finite numbers and
-// references that exist. A fault ends the import with one line, "FILE: /json/pointer: what is wrong; what is
-// allowed". What is read but not modelled stands in SceneDescription::warnings.
+// Everything that the file says is checked here, so that later stages meet indices in range, finite numbers
+// and references that exist. A fault ends the import with one line, "FILE: /json/pointer: what is wrong; what
+// is allowed". What is read but not modelled stands in SceneDescription::warnings.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -13,8 +14,8 @@ namespace etendue {
 
 SceneDescription import_gltf(const std::filesystem::path& file);
 
-// The same for bytes already in memory (either form). `file` names the scene in messages, and the folder of `file`
-// is where relative URIs are looked up.
+// The same for bytes already in memory (either form). `file` names the scene in messages, and the folder of
+// `file` is where relative URIs are looked up.
 SceneDescription import_gltf(std::span<const uint8_t> bytes, const std::filesystem::path& file);
 
 }  // namespace etendue

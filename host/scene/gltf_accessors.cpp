@@ -1,4 +1,5 @@
-// Accessors: checked once against their views, then read in bulk, without a virtual call or a lookup an element.
+// Accessors: checked once against their views, then read in bulk, without a virtual call or a lookup an
+// element.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -34,11 +35,11 @@ size_t element_size(const TypeShape& shape, Component component) {
 }
 
 // Start of `count` elements, all inside the view.
-const uint8_t* data_in_view(const JsonAt& at, const BufferView& view, size_t offset, size_t count, size_t stride,
-                            size_t size) {
+const uint8_t* data_in_view(const JsonAt& at, const BufferView& view, size_t offset, size_t count,
+                            size_t stride, size_t size) {
     if (offset > view.bytes.size() || (count - 1) * stride + size > view.bytes.size() - offset)
-        fail_at(at, "reads bytes {} to {} of a bufferView that has {}", offset, offset + (count - 1) * stride + size,
-                view.bytes.size());
+        fail_at(at, "reads bytes {} to {} of a bufferView that has {}", offset,
+                offset + (count - 1) * stride + size, view.bytes.size());
     return view.bytes.data() + offset;
 }
 
@@ -58,14 +59,16 @@ void load_sparse(const GltfImport& import, const JsonAt& at, size_t size, Access
         sparse.index_component != Component::u32)
         fail_at(type, "is {}; must be 5121, 5123 or 5125", uint32_t(sparse.index_component));
     size_t index_size = component_size(sparse.index_component);
-    sparse.indices = data_in_view(indices, view_of(import, indices), byte_offset(indices), sparse.count, index_size,
-                                  index_size);
-    sparse.values = data_in_view(values, view_of(import, values), byte_offset(values), sparse.count, size, size);
+    sparse.indices = data_in_view(indices, view_of(import, indices), byte_offset(indices), sparse.count,
+                                  index_size, index_size);
+    sparse.values =
+        data_in_view(values, view_of(import, values), byte_offset(values), sparse.count, size, size);
     for (size_t i = 0; i < sparse.count; ++i) {
         uint32_t index = 0;
         std::memcpy(&index, sparse.indices + i * index_size, index_size);
         if (index >= accessor.count)
-            fail_at(indices, "has index {} at position {}; the accessor has {} elements", index, i, accessor.count);
+            fail_at(indices, "has index {} at position {}; the accessor has {} elements", index, i,
+                    accessor.count);
     }
 }
 
@@ -83,13 +86,24 @@ void convert(const uint8_t* data, size_t stride, size_t count, size_t components
         }
 }
 
-void convert_any(const Accessor& a, const uint8_t* data, size_t stride, size_t count, float* out, size_t out_stride) {
+void convert_any(const Accessor& a, const uint8_t* data, size_t stride, size_t count, float* out,
+                 size_t out_stride) {
     switch (a.component) {
-        case Component::i8: convert<int8_t>(data, stride, count, a.components, a.normalized, out, out_stride); break;
-        case Component::u8: convert<uint8_t>(data, stride, count, a.components, a.normalized, out, out_stride); break;
-        case Component::i16: convert<int16_t>(data, stride, count, a.components, a.normalized, out, out_stride); break;
-        case Component::u16: convert<uint16_t>(data, stride, count, a.components, a.normalized, out, out_stride); break;
-        case Component::u32: convert<uint32_t>(data, stride, count, a.components, a.normalized, out, out_stride); break;
+        case Component::i8:
+            convert<int8_t>(data, stride, count, a.components, a.normalized, out, out_stride);
+            break;
+        case Component::u8:
+            convert<uint8_t>(data, stride, count, a.components, a.normalized, out, out_stride);
+            break;
+        case Component::i16:
+            convert<int16_t>(data, stride, count, a.components, a.normalized, out, out_stride);
+            break;
+        case Component::u16:
+            convert<uint16_t>(data, stride, count, a.components, a.normalized, out, out_stride);
+            break;
+        case Component::u32:
+            convert<uint32_t>(data, stride, count, a.components, a.normalized, out, out_stride);
+            break;
         case Component::f32:
             if (stride == a.components * sizeof(float) && out_stride == a.components)
                 std::memcpy(out, data, count * stride);
@@ -149,13 +163,16 @@ void load_accessors(GltfImport& import) {
         if (find(at, "bufferView")) {
             const BufferView& view = view_of(import, at);
             if (view.stride != 0 && view.stride < size)
-                fail_at(at, "has elements of {} bytes in a bufferView with a byteStride of {}", size, view.stride);
+                fail_at(at, "has elements of {} bytes in a bufferView with a byteStride of {}", size,
+                        view.stride);
             if (view.stride != 0) accessor.stride = view.stride;
             accessor.data = data_in_view(at, view, byte_offset(at), accessor.count, accessor.stride, size);
         } else if (accessor.count > max_zeros) {
-            fail_at(at, "has {} elements without a bufferView; at most {} are allowed", accessor.count, max_zeros);
+            fail_at(at, "has {} elements without a bufferView; at most {} are allowed", accessor.count,
+                    max_zeros);
         }
-        if (std::optional<JsonAt> sparse = find_object(at, "sparse")) load_sparse(import, *sparse, size, accessor);
+        if (std::optional<JsonAt> sparse = find_object(at, "sparse"))
+            load_sparse(import, *sparse, size, accessor);
         import.accessors.push_back(std::move(accessor));
     }
 }
@@ -166,7 +183,8 @@ const Accessor& accessor_at(const GltfImport& import, const JsonAt& index_at) {
 
 std::vector<uint32_t> read_indices(const Accessor& accessor) {
     std::vector<uint32_t> indices(accessor.count);
-    if (accessor.data) widen_any(accessor.component, accessor.data, accessor.stride, accessor.count, indices.data());
+    if (accessor.data)
+        widen_any(accessor.component, accessor.data, accessor.stride, accessor.count, indices.data());
     size_t size = component_size(accessor.component);
     for (size_t i = 0; i < accessor.sparse.count; ++i)
         widen_any(accessor.component, accessor.sparse.values + i * size, size, 1,
@@ -176,15 +194,16 @@ std::vector<uint32_t> read_indices(const Accessor& accessor) {
 
 void read_floats(const Accessor& accessor, size_t first, size_t count, float* out, size_t out_stride) {
     if (accessor.data)
-        convert_any(accessor, accessor.data + first * accessor.stride, accessor.stride, count, out, out_stride);
+        convert_any(accessor, accessor.data + first * accessor.stride, accessor.stride, count, out,
+                    out_stride);
     else
         for (size_t i = 0; i < count; ++i) std::fill_n(out + i * out_stride, accessor.components, 0.0f);
     size_t size = accessor.components * component_size(accessor.component);
     for (size_t i = 0; i < accessor.sparse.count; ++i) {
         size_t index = sparse_index(accessor.sparse, i);
         if (index >= first && index - first < count)
-            convert_any(accessor, accessor.sparse.values + i * size, size, 1, out + (index - first) * out_stride,
-                        out_stride);
+            convert_any(accessor, accessor.sparse.values + i * size, size, 1,
+                        out + (index - first) * out_stride, out_stride);
     }
 }
 

@@ -14,16 +14,26 @@ const uint32_t glb_magic = 0x46546C67, json_chunk_type = 0x4E4F534A, binary_chun
 // Deeper documents are refused: the stack of the program is finite.
 const int max_depth = 256;
 
-const char* const modelled_extensions[] = {
-    "ETD_optics",           "KHR_materials_emissive_strength", "KHR_materials_ior",     "KHR_materials_transmission",
-    "KHR_materials_volume", "KHR_lights_punctual",             "KHR_texture_transform", "KHR_mesh_quantization",
-    "EXT_mesh_gpu_instancing"};
+const char* const modelled_extensions[] = {"ETD_optics",
+                                           "KHR_materials_emissive_strength",
+                                           "KHR_materials_ior",
+                                           "KHR_materials_transmission",
+                                           "KHR_materials_volume",
+                                           "KHR_lights_punctual",
+                                           "KHR_texture_transform",
+                                           "KHR_mesh_quantization",
+                                           "EXT_mesh_gpu_instancing"};
 
 // Part of the scene format, so a scene may require them; for now they are read past, with a warning.
-const char* const planned_extensions[] = {
-    "KHR_materials_dispersion", "KHR_materials_specular",    "KHR_materials_clearcoat",
-    "KHR_materials_sheen",      "KHR_materials_anisotropy",  "KHR_materials_iridescence",
-    "KHR_materials_unlit",      "KHR_materials_diffuse_transmission", "EXT_lights_ies"};
+const char* const planned_extensions[] = {"KHR_materials_dispersion",
+                                          "KHR_materials_specular",
+                                          "KHR_materials_clearcoat",
+                                          "KHR_materials_sheen",
+                                          "KHR_materials_anisotropy",
+                                          "KHR_materials_iridescence",
+                                          "KHR_materials_unlit",
+                                          "KHR_materials_diffuse_transmission",
+                                          "EXT_lights_ies"};
 
 bool is_among(std::span<const char* const> names, const std::string& name) {
     return std::any_of(names.begin(), names.end(), [&](const char* n) { return name == n; });
@@ -42,7 +52,8 @@ std::span<const uint8_t> split_glb(GltfImport& import, std::span<const uint8_t> 
     if (word_at(bytes, 4) != 2) fail_input("{}: is a .glb of version {}; must be 2", file, word_at(bytes, 4));
     size_t length = word_at(bytes, 8);
     if (length > bytes.size())
-        fail_input("{}: the file is truncated: its header says {} bytes, it has {}", file, length, bytes.size());
+        fail_input("{}: the file is truncated: its header says {} bytes, it has {}", file, length,
+                   bytes.size());
     std::span<const uint8_t> text;
     for (size_t at = 12; at + 8 <= length;) {
         size_t size = word_at(bytes, at);
@@ -72,7 +83,8 @@ void check_depth(const std::string& file, std::span<const uint8_t> text) {
         } else if (text[i] == '"') {
             quoted = true;
         } else if (text[i] == '{' || text[i] == '[') {
-            if (++depth > max_depth) fail_input("{}: not a scene: JSON nested deeper than {}", file, max_depth);
+            if (++depth > max_depth)
+                fail_input("{}: not a scene: JSON nested deeper than {}", file, max_depth);
         } else if (text[i] == '}' || text[i] == ']') {
             --depth;
         }
@@ -149,7 +161,8 @@ void check_extensions(GltfImport& import) {
         JsonAt at = document_element(import, "extensionsUsed", i);
         if (!is_among(modelled_extensions, text_value(at))) ignored.emplace(text_value(at), at);
     }
-    for (const auto& [name, at] : ignored) warn(import, at, fmt::format("{} is not modelled yet: ignored", name));
+    for (const auto& [name, at] : ignored)
+        warn(import, at, fmt::format("{} is not modelled yet: ignored", name));
 }
 
 void load_buffers(GltfImport& import) {
@@ -160,7 +173,8 @@ void load_buffers(GltfImport& import) {
         std::optional<JsonAt> uri = find(buffer, "uri");
         if (!uri) {
             if (i != 0 || !import.binary_chunk.data())
-                fail_at(buffer, "has no \"uri\"; only the first buffer of a .glb with a binary chunk needs none");
+                fail_at(buffer,
+                        "has no \"uri\"; only the first buffer of a .glb with a binary chunk needs none");
             bytes = import.binary_chunk;
         } else if (is_data_uri(text_value(*uri))) {
             bytes = import.decoded.emplace_back(decode_data_uri(*uri));
@@ -173,12 +187,14 @@ void load_buffers(GltfImport& import) {
     }
     for (size_t i = 0; i < array_size(import.root, "bufferViews"); ++i) {
         JsonAt view = document_element(import, "bufferViews", i);
-        const auto& bytes = import.buffers[index_value(member(view, "buffer"), import.buffers.size(), "/buffers")];
+        const auto& bytes =
+            import.buffers[index_value(member(view, "buffer"), import.buffers.size(), "/buffers")];
         size_t offset = integer(view, "byteOffset", 0, 0, uint64_t(1) << 53);
         size_t length = integer_value(member(view, "byteLength"), 1, uint64_t(1) << 53);
         if (offset > bytes.size() || length > bytes.size() - offset)
             fail_at(view, "bytes {} to {} of a buffer that has {}", offset, offset + length, bytes.size());
-        import.views.push_back({bytes.subspan(offset, length), size_t(integer(view, "byteStride", 0, 4, 252))});
+        import.views.push_back(
+            {bytes.subspan(offset, length), size_t(integer(view, "byteStride", 0, 4, 252))});
     }
 }
 

@@ -1,4 +1,5 @@
-// Textures and images. Only those that a material refers to are kept, and their images decoded, several at a time.
+// Textures and images. Only those that a material refers to are kept, and their images decoded, several at a
+// time.
 #include <atomic>
 #include <exception>
 #include <thread>

@@ -33,7 +33,7 @@ enum class Component : uint32_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, 
 // A checked accessor: every element lies inside the data.
 struct Accessor {
     Component component = Component::f32;
-    std::string type;           // SCALAR, VEC2, …
+    std::string type;  // SCALAR, VEC2, …
     uint32_t components = 1;
     bool normalized = false;
     size_t count = 0;
@@ -62,24 +62,25 @@ struct GltfImport {
     nlohmann::json document;
     JsonAt root;
 
-    std::span<const uint8_t> binary_chunk;         // of a .glb
-    std::deque<std::vector<std::byte>> files;      // what the buffers look at, where they are not in the scene file:
-    std::deque<Bytes> decoded;                     // other files and data URIs
+    std::span<const uint8_t> binary_chunk;  // of a .glb
+    std::deque<std::vector<std::byte>>
+        files;                  // what the buffers look at, where they are not in the scene file:
+    std::deque<Bytes> decoded;  // other files and data URIs
     std::vector<std::span<const uint8_t>> buffers;
     std::vector<BufferView> views;
     std::vector<Accessor> accessors;
 
-    std::vector<MeshRange> mesh_ranges;            // per glTF mesh, read when a node first uses it
-    std::vector<Bounds> mesh_bounds;               // per SceneDescription::meshes
-    std::vector<uint32_t> image_of;                // glTF image -> SceneDescription::images; UINT32_MAX = unused
-    std::vector<uint32_t> texture_of;              // glTF texture -> SceneDescription::textures; UINT32_MAX = unused
-    std::vector<uint32_t> images_to_decode;        // glTF image of each of SceneDescription::images
+    std::vector<MeshRange> mesh_ranges;  // per glTF mesh, read when a node first uses it
+    std::vector<Bounds> mesh_bounds;     // per SceneDescription::meshes
+    std::vector<uint32_t> image_of;      // glTF image -> SceneDescription::images; UINT32_MAX = unused
+    std::vector<uint32_t> texture_of;    // glTF texture -> SceneDescription::textures; UINT32_MAX = unused
+    std::vector<uint32_t> images_to_decode;  // glTF image of each of SceneDescription::images
     uint32_t default_material = UINT32_MAX;
-    std::set<std::string> warned;                  // subjects of warnings that are given once
+    std::set<std::string> warned;  // subjects of warnings that are given once
     struct {
         size_t triangles = 0, meshes = 0;
         std::string first_pointer, first_name;
-    } zero_area;                                   // what was left out, for one warning
+    } zero_area;  // what was left out, for one warning
 };
 
 // A child of `object` as an array of the document: member(root, "meshes")[i].
@@ -104,7 +105,8 @@ void load_accessors(GltfImport& import);
 const Accessor& accessor_at(const GltfImport& import, const JsonAt& index_at);
 size_t component_size(Component component);
 std::vector<uint32_t> read_indices(const Accessor& accessor);
-// Elements first … first+count as floats (normalised integers mapped to [0,1] or [-1,1]), `out_stride` floats apart.
+// Elements first … first+count as floats (normalised integers mapped to [0,1] or [-1,1]), `out_stride` floats
+// apart.
 void read_floats(const Accessor& accessor, size_t first, size_t count, float* out, size_t out_stride);
 
 // gltf_images.cpp

@@ -21,7 +21,8 @@ std::string escaped(const std::string& key) {
 }
 
 [[noreturn]] void fail_type(const JsonAt& at, const char* wanted) {
-    fail_at(at, "is {} {}; must be {}", at->is_array() || at->is_object() ? "an" : "a", at->type_name(), wanted);
+    fail_at(at, "is {} {}; must be {}", at->is_array() || at->is_object() ? "an" : "a", at->type_name(),
+            wanted);
 }
 
 std::string range_text(double low, double high) {
@@ -34,7 +35,8 @@ std::string range_text(double low, double high) {
 }  // namespace
 
 std::string message_at(const JsonAt& at, const std::string& message) {
-    std::string line = fmt::format("{}: {}{}{}", *at.file, at.pointer, at.pointer.empty() ? "" : ": ", message);
+    std::string line =
+        fmt::format("{}: {}{}{}", *at.file, at.pointer, at.pointer.empty() ? "" : ": ", message);
     for (char& c : line)  // names from the file may hold anything; a message is one line
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
     return line;
@@ -119,7 +121,8 @@ std::vector<double> number_array(const JsonAt& at, size_t size, double low, doub
 uint32_t index_value(const JsonAt& at, size_t size, const char* array) {
     if (!at->is_number()) fail_type(at, "an index, an integer");
     double value = at->get<double>();
-    if (value != std::floor(value) || value < 0) fail_at(at, "is {}; must be an index, an integer from 0", value);
+    if (value != std::floor(value) || value < 0)
+        fail_at(at, "is {}; must be an index, an integer from 0", value);
     if (size == 0) fail_at(at, "is {}, but {} has no elements", value, array);
     if (value >= double(size)) fail_at(at, "is {}; {} has elements 0 to {}", value, array, size - 1);
     return uint32_t(value);
@@ -130,7 +133,8 @@ double number(const JsonAt& object, const std::string& key, double fallback, dou
     return found ? number_value(*found, low, high) : fallback;
 }
 
-uint64_t integer(const JsonAt& object, const std::string& key, uint64_t fallback, uint64_t low, uint64_t high) {
+uint64_t integer(const JsonAt& object, const std::string& key, uint64_t fallback, uint64_t low,
+                 uint64_t high) {
     std::optional<JsonAt> found = find(object, key);
     return found ? integer_value(*found, low, high) : fallback;
 }
@@ -163,8 +167,10 @@ void only_members(const JsonAt& object, std::initializer_list<const char*> allow
     require_object(object);
     for (auto i = object->begin(); i != object->end(); ++i) {
         if (i.key() == "extras") continue;
-        bool known = std::any_of(allowed.begin(), allowed.end(), [&](const char* name) { return i.key() == name; });
-        if (!known) fail_at(member(object, i.key()), "is not known; allowed are {}", fmt::join(allowed, ", "));
+        bool known =
+            std::any_of(allowed.begin(), allowed.end(), [&](const char* name) { return i.key() == name; });
+        if (!known)
+            fail_at(member(object, i.key()), "is not known; allowed are {}", fmt::join(allowed, ", "));
     }
 }
 

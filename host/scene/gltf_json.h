@@ -1,4 +1,5 @@
-// Reading JSON values with their place: each read checks type and range, and a fault names file and JSON pointer.
+// Reading JSON values with their place: each read checks type and range, and a fault names file and JSON
+// pointer.
 #pragma once
 #include <cfloat>
 #include <cstdint>

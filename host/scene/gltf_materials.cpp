@@ -1,4 +1,5 @@
-// Materials: metallic-roughness with the KHR extensions that the class `principled` models, emission and media.
+// Materials: metallic-roughness with the KHR extensions that the class `principled` models, emission and
+// media.
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +10,10 @@ namespace {
 
 using nlohmann::json;
 
-void read_texture(GltfImport& import, const JsonAt& object, const char* key, json& parameters, const char* name) {
-    if (std::optional<JsonAt> info = find_object(object, key)) parameters[name] = read_texture_info(import, *info);
+void read_texture(GltfImport& import, const JsonAt& object, const char* key, json& parameters,
+                  const char* name) {
+    if (std::optional<JsonAt> info = find_object(object, key))
+        parameters[name] = read_texture_info(import, *info);
 }
 
 int alpha_mode(const JsonAt& material) {
@@ -33,7 +36,8 @@ double material_ior(const JsonAt& material) {
 json principled_parameters(GltfImport& import, const JsonAt& material) {
     json p = json::object();
     json none = json::object();
-    JsonAt metal = find_object(material, "pbrMetallicRoughness").value_or(JsonAt{&none, material.pointer, material.file});
+    JsonAt metal = find_object(material, "pbrMetallicRoughness")
+                       .value_or(JsonAt{&none, material.pointer, material.file});
     p["base_color"] = numbers(metal, "baseColorFactor", {1, 1, 1, 1}, 0, 1);
     p["metallic"] = number(metal, "metallicFactor", 1, 0, 1);
     p["roughness"] = number(metal, "roughnessFactor", 1, 0, 1);
@@ -49,7 +53,8 @@ json principled_parameters(GltfImport& import, const JsonAt& material) {
     return p;
 }
 
-// The medium of a volume: Beer-Lambert with attenuationColor left after attenuationDistance (KHR_materials_volume).
+// The medium of a volume: Beer-Lambert with attenuationColor left after attenuationDistance
+// (KHR_materials_volume).
 json volume_parameters(const JsonAt& volume, double ior) {
     std::vector<double> color = numbers(volume, "attenuationColor", {1, 1, 1}, 0, 1);
     json absorption = 0.0;
@@ -59,12 +64,13 @@ json volume_parameters(const JsonAt& volume, double ior) {
         // A channel of 0 would absorb without bound: what is left of it is less than any image shows.
         for (double c : color) absorption.push_back(std::fabs(std::log(std::max(c, 1e-9)) / d));
     }
-    return {{"ior", ior == 0 ? 1e3 : ior}, {"absorption", absorption}};
+    // An ior of 0 stands for a dielectric that reflects everything: no light comes in, any medium will do.
+    return {{"ior", ior == 0 ? 1.0 : ior}, {"absorption", absorption}};
 }
 
 void add_medium(GltfImport& import, MaterialDescription& material, const JsonAt& at, json parameters) {
     std::string name = "medium of " + at.pointer;
-    import.scene.media.push_back({name, {"homogeneous", std::move(parameters), at.pointer}});
+    import.scene.media.push_back({name, { "homogeneous", std::move(parameters), at.pointer }});
     material.inside = name;
 }
 
@@ -126,7 +132,8 @@ uint32_t default_material(GltfImport& import) {
         nlohmann::json empty = nlohmann::json::object();
         MaterialDescription material;
         material.name = "default";
-        material.surface = {"principled", principled_parameters(import, {&empty, "/materials", &import.file_name}),
+        material.surface = {"principled",
+                            principled_parameters(import, {&empty, "/materials", &import.file_name}),
                             "/materials"};
         import.default_material = uint32_t(import.scene.materials.size());
         import.scene.materials.push_back(material);

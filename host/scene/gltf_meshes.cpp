@@ -14,7 +14,8 @@ struct VertexRange {
     size_t first = 0, count = 0;
 };
 
-bool is_among(const Accessor& a, std::initializer_list<Component> floats_and_integers, bool integers_normalized) {
+bool is_among(const Accessor& a, std::initializer_list<Component> floats_and_integers,
+              bool integers_normalized) {
     if (a.component == Component::f32) return true;
     for (Component c : floats_and_integers)
         if (c == a.component) return !integers_normalized || a.normalized;
@@ -32,7 +33,8 @@ std::vector<glm::uvec3> triangles_of(const JsonAt& primitive, uint64_t mode, std
             result[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
         return result;
     }
-    if (corners.size() < 3) fail_at(primitive, "has {} corners; a strip or fan has at least 3", corners.size());
+    if (corners.size() < 3)
+        fail_at(primitive, "has {} corners; a strip or fan has at least 3", corners.size());
     result.resize(corners.size() - 2);
     for (size_t i = 0; i < result.size(); ++i)
         result[i] = mode == fan ? glm::uvec3(corners[i + 1], corners[i + 2], corners[0])
@@ -57,9 +59,10 @@ std::vector<uint32_t> corners_of(GltfImport& import, const JsonAt& primitive, si
     uint32_t highest = 0;
     for (uint32_t corner : corners) highest = std::max(highest, corner);
     if (highest >= vertex_count) {
-        auto bad = std::find_if(corners.begin(), corners.end(), [&](uint32_t c) { return c >= vertex_count; });
-        fail_at(*at, "has index {} at position {}; the primitive has {} vertices", *bad, bad - corners.begin(),
-                vertex_count);
+        auto bad =
+            std::find_if(corners.begin(), corners.end(), [&](uint32_t c) { return c >= vertex_count; });
+        fail_at(*at, "has index {} at position {}; the primitive has {} vertices", *bad,
+                bad - corners.begin(), vertex_count);
     }
     return corners;
 }
@@ -75,15 +78,18 @@ bool all_finite(const std::vector<Vector>& values, float limit) {
 
 // An attribute of the primitive; empty where the primitive does not have it.
 template <class Vector>
-std::vector<Vector> read_attribute(GltfImport& import, const JsonAt& attributes, const char* name, VertexRange range,
-                                   size_t vertex_count, std::initializer_list<const char*> types,
+std::vector<Vector> read_attribute(GltfImport& import, const JsonAt& attributes, const char* name,
+                                   VertexRange range, size_t vertex_count,
+                                   std::initializer_list<const char*> types,
                                    std::initializer_list<Component> integers, bool integers_normalized) {
     std::vector<Vector> values;
     std::optional<JsonAt> at = find(attributes, name);
     if (!at) return values;
     const Accessor& accessor = accessor_at(import, *at);
-    bool type_known = std::any_of(types.begin(), types.end(), [&](const char* t) { return accessor.type == t; });
-    if (!type_known) fail_at(*at, "is an accessor of type {}; must be {}", accessor.type, fmt::join(types, " or "));
+    bool type_known =
+        std::any_of(types.begin(), types.end(), [&](const char* t) { return accessor.type == t; });
+    if (!type_known)
+        fail_at(*at, "is an accessor of type {}; must be {}", accessor.type, fmt::join(types, " or "));
     if (!is_among(accessor, integers, integers_normalized))
         fail_at(*at, "is an accessor with components {}{}; not a form that {} may have",
                 uint32_t(accessor.component), accessor.normalized ? ", normalised" : "", name);
@@ -104,7 +110,8 @@ void gather(std::vector<Vector>& values, const std::vector<uint32_t>& vertices) 
     values = std::move(kept);
 }
 
-// Primitives often share one large set of vertices: where this one uses few of its range, only those are kept.
+// Primitives often share one large set of vertices: where this one uses few of its range, only those are
+// kept.
 void drop_unused_vertices(MeshDescription& mesh) {
     if (mesh.triangles.size() * 3 >= mesh.positions.size() / 2) return;
     std::vector<uint32_t> place(mesh.positions.size(), UINT32_MAX), vertices;
@@ -165,7 +172,8 @@ void normalize_tangents(MeshDescription& mesh) {
             t /= length;
         } else {
             glm::dvec3 n = mesh.normals.empty() ? glm::dvec3(0, 0, 1) : glm::dvec3(mesh.normals[i]);
-            t = glm::normalize(glm::cross(n, std::fabs(n.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+            t = glm::normalize(
+                glm::cross(n, std::fabs(n.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
         }
         mesh.tangents[i] = glm::vec4(glm::vec3(t), mesh.tangents[i].w < 0 ? -1.0f : 1.0f);
     }
@@ -182,12 +190,12 @@ void read_attributes(GltfImport& import, const JsonAt& attributes, size_t vertex
                                              signed_integers, true);
     mesh.tangents = read_attribute<glm::vec4>(import, attributes, "TANGENT", range, vertex_count, {"VEC4"},
                                               signed_integers, true);
-    mesh.uv0 = read_attribute<glm::vec2>(import, attributes, "TEXCOORD_0", range, vertex_count, {"VEC2"}, integers,
-                                         false);
-    mesh.uv1 = read_attribute<glm::vec2>(import, attributes, "TEXCOORD_1", range, vertex_count, {"VEC2"}, integers,
-                                         false);
-    mesh.colors = read_attribute<glm::vec4>(import, attributes, "COLOR_0", range, vertex_count, {"VEC3", "VEC4"},
-                                            {C::u8, C::u16}, true);
+    mesh.uv0 = read_attribute<glm::vec2>(import, attributes, "TEXCOORD_0", range, vertex_count, {"VEC2"},
+                                         integers, false);
+    mesh.uv1 = read_attribute<glm::vec2>(import, attributes, "TEXCOORD_1", range, vertex_count, {"VEC2"},
+                                         integers, false);
+    mesh.colors = read_attribute<glm::vec4>(import, attributes, "COLOR_0", range, vertex_count,
+                                            {"VEC3", "VEC4"}, {C::u8, C::u16}, true);
 }
 
 // False where the primitive has no triangles.
@@ -195,14 +203,17 @@ bool read_primitive(GltfImport& import, const JsonAt& primitive, MeshDescription
     uint64_t mode = integer(primitive, "mode", triangles, 0, 6);
     JsonAt attributes = member(primitive, "attributes");
     require_object(attributes);
-    std::optional<uint32_t> material = index(primitive, "material", array_size(import.root, "materials"), "/materials");
+    std::optional<uint32_t> material =
+        index(primitive, "material", array_size(import.root, "materials"), "/materials");
     if (mode < triangles) {
         const char* what = mode == points ? "points" : "lines";
-        warn_once(import, what, primitive, fmt::format("{} are not modelled: left out of mesh '{}'", what, mesh.name));
+        warn_once(import, what, primitive,
+                  fmt::format("{} are not modelled: left out of mesh '{}'", what, mesh.name));
         return false;
     }
     if (array_size(primitive, "targets") > 0)
-        warn_once(import, "targets", primitive, "morph targets are not modelled: meshes stay as they are without");
+        warn_once(import, "targets", primitive,
+                  "morph targets are not modelled: meshes stay as they are without");
     std::optional<JsonAt> position = find(attributes, "POSITION");
     if (!position) {
         warn(import, attributes, fmt::format("mesh '{}' has no POSITION: left out", mesh.name));

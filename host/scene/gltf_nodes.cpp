@@ -1,4 +1,5 @@
-// The node hierarchy: checked to be a forest, then walked from the scene's roots with transforms in double precision.
+// The node hierarchy: checked to be a forest, then walked from the scene's roots with transforms in double
+// precision.
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -42,7 +43,8 @@ glm::dmat4 local_transform(const JsonAt& node) {
     return trs_matrix({t[0], t[1], t[2]}, q, {s[0], s[1], s[2]});
 }
 
-// Fails where a node has two parents or is its own ancestor. Returns each node's parent, UINT32_MAX for roots.
+// Fails where a node has two parents or is its own ancestor. Returns each node's parent, UINT32_MAX for
+// roots.
 std::vector<uint32_t> check_hierarchy(const GltfImport& import) {
     size_t count = array_size(import.root, "nodes");
     std::vector<uint32_t> parent(count, UINT32_MAX);
@@ -52,7 +54,8 @@ std::vector<uint32_t> check_hierarchy(const GltfImport& import) {
             JsonAt at = element(*children, c);
             uint32_t child = index_value(at, count, "/nodes");
             if (parent[child] != UINT32_MAX)
-                fail_at(at, "node {} is already a child of node {}; a node has one parent at most", child, parent[child]);
+                fail_at(at, "node {} is already a child of node {}; a node has one parent at most", child,
+                        parent[child]);
             parent[child] = n;
         }
     }
@@ -102,8 +105,9 @@ std::vector<glm::dmat4> gpu_instances(GltfImport& import, const JsonAt& node) {
         std::optional<JsonAt> at = find(attributes, name);
         if (!at) return values;
         const Accessor& a = accessor_at(import, *at);
-        bool known = a.component == Component::f32 ||
-                     (integers && a.normalized && (a.component == Component::i8 || a.component == Component::i16));
+        bool known =
+            a.component == Component::f32 ||
+            (integers && a.normalized && (a.component == Component::i8 || a.component == Component::i16));
         if (a.type != type || !known) fail_at(*at, "is not an accessor of the form that {} must have", name);
         if (count != SIZE_MAX && a.count != count)
             fail_at(*at, "has {} elements; the other attributes have {}", a.count, count);
@@ -181,7 +185,8 @@ bool is_invertible(const glm::dmat4& matrix) {
 void load_nodes(GltfImport& import) {
     import.mesh_ranges.resize(array_size(import.root, "meshes"));
     if (array_size(import.root, "animations") > 0)
-        warn(import, member(import.root, "animations"), "animations are not modelled: nodes stay where they are");
+        warn(import, member(import.root, "animations"),
+             "animations are not modelled: nodes stay where they are");
     struct Visit {
         uint32_t node;
         glm::dmat4 world_from_parent;
@@ -208,8 +213,8 @@ void load_nodes(GltfImport& import) {
     }
     if (const auto& none = import.zero_area; none.meshes > 0)
         warn(import, {nullptr, none.first_pointer, &import.file_name},
-             fmt::format("mesh '{}' has triangles of zero area: {} in {} mesh{} are left out", none.first_name,
-                         none.triangles, none.meshes, none.meshes == 1 ? "" : "es"));
+             fmt::format("mesh '{}' has triangles of zero area: {} in {} mesh{} are left out",
+                         none.first_name, none.triangles, none.meshes, none.meshes == 1 ? "" : "es"));
 }
 
 }  // namespace etendue

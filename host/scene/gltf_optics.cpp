@@ -1,5 +1,5 @@
-// The extension ETD_optics: what glTF cannot say. Classes and their parameters pass through as they stand; names
-// and indices that refer to other things of the scene are checked here.
+// The extension ETD_optics: what glTF cannot say. Classes and their parameters pass through as they stand;
+// names and indices that refer to other things of the scene are checked here.
 #include <algorithm>
 
 #include "host/scene/gltf_import.h"
@@ -9,9 +9,10 @@ namespace {
 
 using nlohmann::json;
 
-// {"class": NAME, parameter: value, …}; `names` are members that are not parameters. A parameter that is an object
-// with an "index" is a textureInfo.
-ObjectDescription object_description(GltfImport& import, const JsonAt& at, std::initializer_list<const char*> names) {
+// {"class": NAME, parameter: value, …}; `names` are members that are not parameters. A parameter that is an
+// object with an "index" is a textureInfo.
+ObjectDescription object_description(GltfImport& import, const JsonAt& at,
+                                     std::initializer_list<const char*> names) {
     require_object(at);
     ObjectDescription result;
     result.class_name = text_value(member(at, "class"));
@@ -89,7 +90,8 @@ EmissionDescription read_emission(const JsonAt& at) {
             emission.value = **value;
             ++count;
         }
-    if (count != 1) fail_at(at, "names {} quantities; must name one of radiance, luminance, power, flux", count);
+    if (count != 1)
+        fail_at(at, "names {} quantities; must name one of radiance, luminance, power, flux", count);
     if (std::optional<JsonAt> spectrum = find(at, "spectrum")) emission.spectrum = **spectrum;
     return emission;
 }
@@ -113,7 +115,8 @@ void read_material_optics(GltfImport& import, const JsonAt& optics, MaterialDesc
         material.surface = object_description(import, *surface, {});
     material.inside = text(optics, "inside");
     material.outside = text(optics, "outside");
-    if (std::optional<JsonAt> emission = find_object(optics, "emission")) material.emission = read_emission(*emission);
+    if (std::optional<JsonAt> emission = find_object(optics, "emission"))
+        material.emission = read_emission(*emission);
 }
 
 void check_media_names(const GltfImport& import) {
@@ -124,7 +127,8 @@ void check_media_names(const GltfImport& import) {
         if (!optics) continue;
         for (const char* side : {"inside", "outside"})
             if (std::optional<JsonAt> at = find(*optics, side); at && !names.contains(text_value(*at)))
-                fail_at(*at, "there is no medium '{}'; /extensions/ETD_optics/media defines media", text_value(*at));
+                fail_at(*at, "there is no medium '{}'; /extensions/ETD_optics/media defines media",
+                        text_value(*at));
     }
 }
 
@@ -142,8 +146,10 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
         if (!at) return;
         bool is_geometry = &objects == &import.scene.shapes;
         std::string name = text(node, "name", node.pointer);
-        PlacedObject object{name, is_geometry ? object_description(import, *at, {"material"})
-                                              : object_description(import, *at, {}), world_from_local};
+        PlacedObject object{
+            name,
+            is_geometry ? object_description(import, *at, {"material"}) : object_description(import, *at, {}),
+            world_from_local};
         if (is_geometry) {
             auto material = index(*at, "material", array_size(import.root, "materials"), "/materials");
             object.material = material ? *material : default_material(import);

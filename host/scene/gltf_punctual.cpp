@@ -9,7 +9,8 @@ namespace {
 
 const double pi = 3.14159265358979323846;
 
-// Cameras and lights take position and rotation of their node, not its scale. A mirrored frame stays mirrored.
+// Cameras and lights take position and rotation of their node, not its scale. A mirrored frame stays
+// mirrored.
 glm::dmat4 without_scale(const glm::dmat4& m) {
     glm::dvec3 z = glm::normalize(glm::dvec3(m[2])), y = glm::dvec3(m[1]);
     y = glm::normalize(y - z * glm::dot(y, z));
@@ -37,7 +38,8 @@ ObjectDescription camera_description(const JsonAt& camera) {
         return result;
     }
     double yfov = positive(member(shape, "yfov"));
-    if (yfov >= pi) fail_at(member(shape, "yfov"), "is {}; must be more than 0 and less than pi (radians)", yfov);
+    if (yfov >= pi)
+        fail_at(member(shape, "yfov"), "is {}; must be more than 0 and less than pi (radians)", yfov);
     result.parameters["yfov"] = yfov;
     if (std::optional<JsonAt> aspect = find(shape, "aspectRatio"))
         result.parameters["aspect_ratio"] = positive(*aspect);
@@ -57,9 +59,11 @@ ObjectDescription light_description(const JsonAt& light) {
     if (name == "spot") {
         JsonAt spot = member(light, "spot");
         double inner = number(spot, "innerConeAngle", 0, 0, pi / 2);
-        double outer = number(spot, "outerConeAngle", pi / 4, 0, pi / 2 * (1 + 1e-6));  // pi/2 as a float may be more
+        double outer =
+            number(spot, "outerConeAngle", pi / 4, 0, pi / 2 * (1 + 1e-6));  // pi/2 as a float may be more
         if (!(inner < outer))
-            fail_at(spot, "innerConeAngle is {}, outerConeAngle {}; the inner must be the smaller one", inner, outer);
+            fail_at(spot, "innerConeAngle is {}, outerConeAngle {}; the inner must be the smaller one", inner,
+                    outer);
         result.parameters["inner_cone_angle"] = inner;
         result.parameters["outer_cone_angle"] = std::fmin(outer, pi / 2);
     }
@@ -67,7 +71,8 @@ ObjectDescription light_description(const JsonAt& light) {
 }
 
 void require_directions(const JsonAt& node, const glm::dmat4& world_from_local, const char* what) {
-    if (!is_invertible(world_from_local)) fail_at(node, "has a {}, and a transform that squashes space flat", what);
+    if (!is_invertible(world_from_local))
+        fail_at(node, "has a {}, and a transform that squashes space flat", what);
 }
 
 }  // namespace

@@ -47,8 +47,8 @@ Bytes decode_data_uri(const JsonAt& at) {
     if (comma == std::string::npos || comma + 1 < marker.size() ||
         uri.compare(comma + 1 - marker.size(), marker.size(), marker) != 0)
         fail_at(at, "is a data URI of an unknown form; must be data:MEDIA-TYPE;base64,DATA");
-    size_t first_bad = uri.find_first_not_of(
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=", comma + 1);
+    size_t first_bad =
+        uri.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/=", comma + 1);
     if (first_bad != std::string::npos)
         fail_at(at, "has a character that base64 does not know, at position {}", first_bad);
     if (comma + 1 == uri.size()) return {};
@@ -56,8 +56,9 @@ Bytes decode_data_uri(const JsonAt& at) {
     // The decoder knows a few media types only; the type does not matter here.
     Bytes bytes;
     std::string media_type;
-    if (!tinygltf::DecodeDataURI(&bytes, media_type, "data:application/octet-stream" + uri.substr(comma + 1 - marker.size()),
-                                 0, false))
+    if (!tinygltf::DecodeDataURI(&bytes, media_type,
+                                 "data:application/octet-stream" + uri.substr(comma + 1 - marker.size()), 0,
+                                 false))
         fail_at(at, "holds no base64 data");
     return bytes;
 }

@@ -28,8 +28,8 @@ namespace {
 // 16384 x 16384: a header that asks for more is taken for damaged.
 const uint64_t max_texels = uint64_t(1) << 28;
 
-// stb_image reads zeros past the end of its input, and a truncated image comes out whole but black in part. Here the
-// source notes that more was asked for than there is.
+// stb_image reads zeros past the end of its input, and a truncated image comes out whole but black in part.
+// Here the source notes that more was asked for than there is.
 struct Source {
     std::span<const uint8_t> bytes;
     size_t at = 0;
@@ -59,6 +59,13 @@ int source_ended(void* user) {
 
 const stbi_io_callbacks source_callbacks = {read_source, skip_source, source_ended};
 
+// stb_image's reasons may quote bytes of the file.
+std::string printable(std::string text) {
+    for (char& c : text)
+        if (c < 0x20 || c > 0x7e) c = '?';
+    return text;
+}
+
 struct StbiFree {
     void operator()(void* pixels) const { stbi_image_free(pixels); }
 };
@@ -71,8 +78,8 @@ void check_size(uint64_t width, uint64_t height, const std::string& where) {
 void check_finite(const ImageDescription& image, const std::string& where) {
     for (size_t i = 0; i < image.rgba32f.size(); ++i)
         if (!std::isfinite(image.rgba32f[i]))
-            fail_input("{}: the texel in column {}, row {} of the image is not finite", where, i / 4 % image.width,
-                       i / 4 / image.width);
+            fail_input("{}: the texel in column {}, row {} of the image is not finite", where,
+                       i / 4 % image.width, i / 4 / image.width);
 }
 
 ImageDescription decode_exr(std::span<const uint8_t> bytes, const std::string& where) {
@@ -86,7 +93,8 @@ ImageDescription decode_exr(std::span<const uint8_t> bytes, const std::string& w
     for (size_t c = 0; c < 4; ++c) {
         std::span<const float> from;
         if (c < 3 || alpha >= 0) from = plane(std::as_const(exr), c < 3 ? channels[c] : size_t(alpha));
-        for (size_t i = 0; i < pixel_count(exr); ++i) image.rgba32f[4 * i + c] = from.empty() ? 1.0f : from[i];
+        for (size_t i = 0; i < pixel_count(exr); ++i)
+            image.rgba32f[4 * i + c] = from.empty() ? 1.0f : from[i];
     }
     return image;
 }
@@ -113,7 +121,7 @@ ImageDescription decode_image(std::span<const uint8_t> bytes, const std::string&
         std::unique_ptr<uint8_t, StbiFree> pixels(
             stbi_load_from_callbacks(&source_callbacks, &source, &width, &height, &channels, 4));
         if (source.ran_out) fail_input("{}: the image is truncated", where);
-        if (!pixels) fail_input("{}: the image is damaged: {}", where, stbi_failure_reason());
+        if (!pixels) fail_input("{}: the image is damaged: {}", where, printable(stbi_failure_reason()));
         image.rgba8.assign(pixels.get(), pixels.get() + 4 * size_t(width) * size_t(height));
     }
     check_finite(image, where);
