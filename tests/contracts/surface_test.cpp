@@ -40,7 +40,7 @@ struct Measurement {
     const SurfaceConfiguration* configuration;
     glm::vec3 wo;
     SurfaceSurroundings at;
-    bool is_delta;
+    bool is_delta, is_opaque;
     size_t bad_values = 0;    // not finite, or negative
     double worst_weight = 0;  // weight pdf against eval, relative, at the 99.9 % quantile of the samples
     double worst_pdf = 0;     // pdf of the sample against pdf
@@ -138,6 +138,7 @@ Measurement measure(SurfaceProbe& probe, size_t record, const SurfaceConfigurati
     m.at = {configuration.ior_above, configuration.ior_below, importance};
     const SurfaceSamples drawn = probe.sample(record, m.at, wo, pilot_count + sample_count, 7);
     m.is_delta = drawn.is_delta;
+    m.is_opaque = drawn.is_opaque;
     m.transparency = drawn.transparency;
     std::vector<glm::vec3> pilot;
     for (uint32_t i = 0; i < pilot_count; ++i)
@@ -286,10 +287,45 @@ TEST_CASE("surfaces of known albedo have it in every direction") {
     }
 }
 
+TEST_CASE(
+    "rough surfaces have the albedo of Walter et al. 2007, equations 20 and 21, integrated in double "
+    "precision") {
+    struct Expected {
+        const char* label;
+        double cosine, albedo;
+    };
+    const Expected table[] = {
+        {"conductor, white, alpha .3", 1, 0.87736},     {"conductor, white, alpha .3", 0.7, 0.84352},
+        {"conductor, white, alpha .3", 0.25, 0.80918},  {"conductor, white, alpha 1", 0.7, 0.36100},
+        {"conductor, white, alpha 1", 0.25, 0.49096},   {"dielectric, glass, alpha .3", 0.7, 0.97077},
+        {"dielectric, glass, alpha .3", 0.25, 0.89584}, {"dielectric, glass, alpha .3", -0.85, 0.86532},
+        {"dielectric, glass, alpha .3", -0.3, 0.75120}, {"dielectric, glass, alpha 1", 0.7, 0.77587},
+        {"dielectric, glass, alpha 1", -0.3, 0.38311},
+    };
+    for (const Expected& e : table) {
+        size_t found = 0;
+        for (const Measurement& m : measurements()) {
+            if (m.label.rfind(std::string(e.label) + ",", 0) != 0 || std::abs(m.wo.z - e.cosine) > 1e-6)
+                continue;
+            INFO(m.label);
+            CHECK(std::abs(m.albedo.x - e.albedo) < 2e-4);
+            found++;
+        }
+        CHECK(found == 2);
+    }
+}
+
 TEST_CASE("what a surface's samples let pass straight on is its transparency") {
     for (const Measurement& m : measurements()) {
         INFO(m.label);
         for (int k = 0; k < 3; ++k) CHECK(m.straight[k] == doctest::Approx(m.transparency[k]).epsilon(1e-5));
+    }
+}
+
+TEST_CASE("surfaces that let light pass straight on say that they are not opaque") {
+    for (const Measurement& m : measurements()) {
+        INFO(m.label);
+        if (m.is_opaque) CHECK(m.transparency == glm::dvec3(0));
     }
 }
 

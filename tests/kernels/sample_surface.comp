@@ -5,7 +5,7 @@ layout(local_size_x = 64) in;
 
 struct Sample { vec3 wi; float pdf; vec3 weight; uint event; vec3 value; float value_pdf; };
 layout(scalar, set = 0) writeonly buffer Samples { Sample samples[]; };
-layout(scalar, set = 0) writeonly buffer Answers { vec4 answers[]; };  // transparency, is_delta
+layout(scalar, set = 0) writeonly buffer Answers { vec4 answers[]; };  // transparency, is_delta and 2 is_opaque
 layout(push_constant) uniform Push {
     uint count, seed, surface;
     float wo_x, wo_y, wo_z, ior_above, ior_below;
@@ -27,5 +27,6 @@ void main() {
     samples[i] = Sample(s.wi, s.pdf, s.weight, s.event, surface_eval(surface, c, wo, s.wi),
                         surface_pdf(surface, c, wo, s.wi));
     if (i == 0u)
-        answers[0] = vec4(surface_transparency(surface, c, wo), surface_is_delta(surface, c) ? 1.0 : 0.0);
+        answers[0] = vec4(surface_transparency(surface, c, wo), (surface_is_delta(surface, c) ? 1.0 : 0.0) +
+                                                                    (surface_is_opaque(surface, c) ? 2.0 : 0.0));
 }

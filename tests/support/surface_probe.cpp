@@ -94,7 +94,8 @@ SurfaceSamples SurfaceProbe::sample(size_t record, const SurfaceSurroundings& at
                    {"color_a", at.color.w}});
     list.run();
     const glm::vec4 answer = answers_.read_array<glm::vec4>(1)[0];
-    return {samples_.read_array<SurfaceSample>(count), glm::vec3(answer), answer.w != 0.0f};
+    return {samples_.read_array<SurfaceSample>(count), glm::vec3(answer), (int(answer.w) & 1) != 0,
+            (int(answer.w) & 2) != 0};
 }
 
 std::vector<SurfaceValue> SurfaceProbe::evaluate(size_t record, const SurfaceSurroundings& at,

@@ -31,7 +31,7 @@ struct SurfaceSample {
 struct SurfaceSamples {
     std::vector<SurfaceSample> samples;
     glm::vec3 transparency;
-    bool is_delta;
+    bool is_delta, is_opaque;
 };
 
 struct DirectionPair {
