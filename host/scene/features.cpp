@@ -27,6 +27,12 @@ std::string Features::defines() const {
     define("HAS_INTERFACES", interfaces);
     define("HAS_STRAIGHT", straight);
     define("HAS_LIGHT_TREE", light_tree);
+    define("NODES_BY_ADDRESS", nodes_by_address);
+    define("PRIMITIVES_BY_ADDRESS", primitives_by_address);
+    define("VERTICES_BY_ADDRESS", vertices_by_address);
+    define("TRIANGLE_INDICES_BY_ADDRESS", triangle_indices_by_address);
+    define("TEXELS_BY_ADDRESS", texels_by_address);
+    define("ENVIRONMENT_TEXELS_BY_ADDRESS", environment_texels_by_address);
     define("TEXTURE_FORMATS", texture_formats);
     define("BVH_STACK_SIZE", bvh_stack_size);
     define("LIGHT_COUNT", light_count);

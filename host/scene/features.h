@@ -18,6 +18,12 @@ struct Features {
     bool interfaces = false;         // some surface separates media: paths keep track of where they are
     bool straight = false;           // some surface lets light pass straight on: shadow rays go through
     bool light_tree = false;
+    bool nodes_by_address = false;   // arrays too large for one binding
+    bool primitives_by_address = false;
+    bool vertices_by_address = false;
+    bool triangle_indices_by_address = false;
+    bool texels_by_address = false;
+    bool environment_texels_by_address = false;
     uint32_t texture_formats = 7;    // of lib/textures.glsl, a bit each
     uint32_t bvh_stack_size = 64;    // references that a traversal can hold back
     uint32_t light_count = 0;        // finite and infinite lights

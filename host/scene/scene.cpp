@@ -107,6 +107,16 @@ class SceneCompiler {
         out_.buffers[name] = create_buffer(device_, data, name);
     }
 
+    // An array that may exceed a binding: its address goes into the buffer LargeArrays (lib/large_arrays.glsl).
+    template <class T>
+    void upload_large(const std::string& name, const std::vector<T>& data, uint32_t slot, bool& by_address) {
+        upload(name, data);
+        const uint64_t limit = options_.binding_bytes ? options_.binding_bytes : device_.description.max_buffer_range;
+        by_address = out_.buffers[name].bytes() > limit;
+        large_arrays_[slot] = out_.buffers[name].address();
+        upload("LargeArrays", std::vector<uint64_t>(large_arrays_, large_arrays_ + 6));
+    }
+
     void add_class_files() {
         for (const ClassFileDescription& file : in_.class_files) {
             const auto& interfaces = all_interfaces();
@@ -316,7 +326,7 @@ class SceneCompiler {
         if (textures_.empty()) return;
         const PackedTextures packed = pack_textures(in_.images, textures_);
         out_.features.texture_formats = packed.formats;
-        upload("Texels", packed.texels);
+        upload_large("Texels", packed.texels, 4, out_.features.texels_by_address);
         upload("Textures", packed.textures);
     }
 
@@ -332,11 +342,12 @@ class SceneCompiler {
     }
 
     void upload_world() {
-        upload("Primitives", world_.primitives);
-        upload("Nodes", world_.nodes);
+        Features& f = out_.features;
+        upload_large("Nodes", world_.nodes, 0, f.nodes_by_address);
+        upload_large("Primitives", world_.primitives, 1, f.primitives_by_address);
+        upload_large("Vertices", world_.vertices, 2, f.vertices_by_address);
+        upload_large("TriangleIndices", world_.triangle_indices, 3, f.triangle_indices_by_address);
         upload("Transforms", world_.transforms);
-        upload("Vertices", world_.vertices);
-        upload("TriangleIndices", world_.triangle_indices);
     }
 
     // Power and extent of every light, found out by the classes on the device; then the order of the list, the tree, and
@@ -344,7 +355,7 @@ class SceneCompiler {
     void measure_lights() {
         for (const InterfaceInfo& interface : all_interfaces())
             upload(interface.buffer, records_[interface.interface].bytes());
-        upload("EnvironmentTexels", environment_texels_);
+        upload_large("EnvironmentTexels", environment_texels_, 5, out_.features.environment_texels_by_address);
         upload("Materials", materials_);
         upload_world();
         upload("Lights", lights_);
@@ -374,7 +385,7 @@ class SceneCompiler {
         upload("Lights", sorted_lights);
         upload("LightNodes", tree.nodes);
         upload("LightTrails", tree.trails);
-        upload("Primitives", world_.primitives);
+        out_.buffers["Primitives"].write(world_.primitives.data(), world_.primitives.size() * sizeof(PrimitiveRecord));
     }
 
     std::vector<LightBounds> run_measurement() {
@@ -419,6 +430,7 @@ class SceneCompiler {
     std::vector<MaterialRecord> materials_;
     World world_;
     std::vector<uint32_t> lights_;           // RecordRefs
+    uint64_t large_arrays_[6] = {};
     uint32_t first_area_light_ = 0;          // in lights_, before they are sorted
     std::vector<uint32_t> area_primitives_;  // of each area light
 };

@@ -54,6 +54,7 @@ struct SceneOptions {
     std::filesystem::path environment;  // image that takes the place of the scene's environment
     std::filesystem::path cache_folder; // of compiled kernels; empty = none
     unsigned threads = 0;               // for building; 0 = all
+    uint64_t binding_bytes = 0;         // arrays above this are read by address; 0 = what the device can bind
 };
 
 // Errors: fail_input for what is wrong in the scene, fail_device for what the device cannot hold.

@@ -17,12 +17,19 @@
 #include "interfaces/geometry.glsl"
 #include "geometry/triangle.glsl"
 
-// How entries are fetched may be set before this file is included.
-#ifndef node_at
+#include "lib/large_arrays.glsl"
+
+#if NODES_BY_ADDRESS
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer NodesAt { uvec4 entries[]; };
+#define node_at(i) NodesAt(nodes_address).entries[i]
+#else
 layout(scalar) readonly buffer Nodes { uvec4 nodes[]; };
 #define node_at(i) nodes[i]
 #endif
-#ifndef primitive_at
+#if PRIMITIVES_BY_ADDRESS
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PrimitivesAt { Triangle entries[]; };
+#define primitive_at(i) PrimitivesAt(primitives_address).entries[i]
+#else
 layout(scalar) readonly buffer Primitives { Triangle primitives[]; };
 #define primitive_at(i) primitives[i]
 #endif
@@ -45,10 +52,8 @@ struct Transform {
     mat4x3 world_from_local;
     mat4x3 local_from_world;
 };
-#ifndef transform_at
 layout(scalar) readonly buffer Transforms { Transform transforms[]; };
 #define transform_at(i) transforms[i]
-#endif
 
 float max_component3(vec3 v) { return max(max(v.x, v.y), v.z); }
 float min_component3(vec3 v) { return min(min(v.x, v.y), v.z); }

@@ -22,11 +22,17 @@ struct Vertex {
     vec4 tangent;  // unit, w = ±1; zero = derive it from uv0
     vec2 uv0, uv1;
 };
-#ifndef vertex_at
+#if VERTICES_BY_ADDRESS
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer VerticesAt { Vertex entries[]; };
+#define vertex_at(i) VerticesAt(vertices_address).entries[i]
+#else
 layout(scalar) readonly buffer Vertices { Vertex vertices[]; };
 #define vertex_at(i) vertices[i]
 #endif
-#ifndef triangle_indices_at
+#if TRIANGLE_INDICES_BY_ADDRESS
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TriangleIndicesAt { uvec3 entries[]; };
+#define triangle_indices_at(i) TriangleIndicesAt(triangle_indices_address).entries[i]
+#else
 layout(scalar) readonly buffer TriangleIndices { uvec3 triangle_indices[]; };
 #define triangle_indices_at(i) triangle_indices[i]
 #endif

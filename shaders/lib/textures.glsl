@@ -2,7 +2,7 @@
 // glTF. Packed by host/scene/texture_pack.h: 8-bit images keep their bytes and are decoded here.
 //
 // Macros that may be set in front: HAS_TEXTURES (0: every texture_value is one), TEXTURE_FORMATS (the formats to
-// compile, a bit each), texel_at(i) (word i of the texels, where they are not in the buffer Texels).
+// compile, a bit each).
 
 #if !HAS_TEXTURES
 
@@ -34,7 +34,11 @@ const uint WRAP_MIRROR = 2u;
 #define HAS_TEXTURE_FORMAT(format) (((TEXTURE_FORMATS >> format) & 1u) != 0u)
 
 layout(scalar, set = 0) readonly buffer Textures { Texture texture_records[]; };
-#ifndef texel_at
+#include "lib/large_arrays.glsl"
+#if TEXELS_BY_ADDRESS
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TexelsAt { uint entries[]; };
+#define texel_at(i) TexelsAt(texels_address).entries[i]
+#else
 layout(scalar, set = 0) readonly buffer Texels { uint texels[]; };
 #define texel_at(i) texels[i]
 #endif

@@ -25,7 +25,11 @@ struct ImageEnvironment {
 };
 
 // How texels are fetched may be set before this file is included.
-#ifndef environment_texel_at
+#include "lib/large_arrays.glsl"
+#if ENVIRONMENT_TEXELS_BY_ADDRESS
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer EnvironmentTexelsAt { uvec4 entries[]; };
+#define environment_texel_at(i) EnvironmentTexelsAt(environment_texels_address).entries[i]
+#else
 layout(scalar, set = 0) readonly buffer EnvironmentTexels { uvec4 environment_texels[]; };  // floats, as bits
 #define environment_texel_at(i) environment_texels[i]
 #endif
