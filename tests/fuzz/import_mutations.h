@@ -5,6 +5,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "host/scene/image_file.h"
 #include "tests/host/gltf_scene_builder.h"
 
 namespace etendue {
@@ -212,10 +213,19 @@ inline void check_invariants(const SceneDescription& s) {
         require(!m.surface.class_name.empty(), "a material has a surface");
 }
 
-// Imports and checks; returns whether it was a scene. Anything but a one-line input error passes through.
+inline bool is_image(std::span<const uint8_t> bytes) {
+    const uint8_t first = bytes.empty() ? 0 : bytes[0];
+    return first == 0x89 || first == 0xFF || first == '#' || first == 0x76;  // PNG, JPEG, .hdr, OpenEXR
+}
+
+// Imports (or decodes, where it looks like an image) and checks; returns whether it was sound. Anything but a
+// one-line input error passes through.
 inline bool try_import(std::span<const uint8_t> bytes) {
     try {
-        check_invariants(import_gltf(bytes, "nowhere/fuzz.glb"));
+        if (is_image(bytes))
+            decode_image(bytes, "nowhere/fuzz.glb");
+        else
+            check_invariants(import_gltf(bytes, "nowhere/fuzz.glb"));
         return true;
     } catch (const Error& e) {
         if (e.code != ExitCode::bad_input) throw;
