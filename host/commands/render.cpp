@@ -41,13 +41,20 @@ ImageSize image_size(const Receiver& receiver, const RenderOptions& options) {
     return {std::max(1u, uint32_t(std::lround(512 * aspect))), 512};
 }
 
+// Of everything that the device holds of the scene and of what it compiles, whichever files that came from.
+uint64_t scene_hash(const Scene& scene) {
+    uint64_t hash = hash_bytes({});
+    for (const auto& [name, buffer] : scene.buffers)
+        if (name != "LargeArrays")  // addresses, which differ from run to run
+            hash = hash_bytes(buffer.read_array<std::byte>(buffer.bytes()), hash);
+    for (const auto& [name, text] : scene.sources.generated) hash = hash_bytes(std::as_bytes(std::span(text)), hash);
+    return hash;
+}
+
 // What a checkpoint must agree on to be gone on from.
-nlohmann::json checkpoint_identity(const RenderOptions& options, const ImageSize& size, const Receiver& receiver,
-                                   const Device& device) {
-    const auto hash_file = [](const std::filesystem::path& file) {
-        return file.empty() ? std::string() : fmt::format("{:016x}", hash_bytes(read_whole_file(file)));
-    };
-    return {{"version", ETENDUE_VERSION}, {"scene", hash_file(options.scene)}, {"environment", hash_file(options.environment)},
+nlohmann::json checkpoint_identity(const RenderOptions& options, const Scene& scene, const ImageSize& size,
+                                   const Receiver& receiver, const Device& device) {
+    return {{"version", ETENDUE_VERSION}, {"scene", fmt::format("{:016x}", scene_hash(scene))},
             {"size", fmt::format("{}x{}", size.width, size.height)}, {"receiver", receiver.name},
             {"seed", options.seed}, {"device", device.description.name + " " + device.description.driver}};
 }
@@ -138,7 +145,9 @@ int render_command(const RenderOptions& given) {
     settings.schedule = options.schedule;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
     Renderer renderer(*device, scene, settings);
-    const nlohmann::json identity = checkpoint_identity(options, *options.size, receiver, *device);
+    nlohmann::json identity;
+    if (!options.checkpoint.empty() || !options.resume.empty())
+        identity = checkpoint_identity(options, scene, *options.size, receiver, *device);
     if (!options.resume.empty()) load_checkpoint(options.resume, identity, renderer);
     const double setup_seconds = seconds_since(start);
 

@@ -51,6 +51,8 @@ class Buffer {
 template <class T>
 Buffer create_buffer(Device& device, std::span<const T> data, std::string name) {
     Buffer buffer(device, data.size_bytes(), std::move(name));
+    const uint32_t zeros[4] = {};
+    buffer.write(zeros, sizeof zeros, buffer.bytes() - sizeof zeros);  // behind the data, up to the rounded size
     if (!data.empty()) buffer.write(data.data(), data.size_bytes());
     return buffer;
 }
