@@ -28,12 +28,6 @@ Spectrum collect_light(Path path, uint light, LightHit hit) {
     return path.throughput * radiance * weight;
 }
 
-void collect_escape(inout Path path, inout Counters counters) {
-    counters.escaped += luminance(path.throughput);
-    [[unroll]] for (uint light = 0u; light < uint(INFINITE_LIGHT_COUNT); ++light)
-        path.radiance += collect_light(path, light, LightHit(vec3(0), vec3(0), vec2(0), vec2(0)));
-}
-
 // The end of a ray towards a sampled point of a light lies short of the light by the rounding error of both points, so
 // that the light does not hide itself while anything a hair in front of it still does.
 float shadow_t_max(vec3 origin, float distance) {
@@ -111,14 +105,24 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
 #if HAS_MEDIA
     if (path.medium != NO_RECORD) path.throughput *= medium_transmittance(path.medium, hit.t);
 #endif
-    // collect_emission
-    if (hit.primitive == NO_RECORD) {
-        collect_escape(path, counters);
+    // collect_emission: of the primitive that is hit, or of all that surrounds the scene
+    bool escapes = hit.primitive == NO_RECORD;
+    SurfacePoint p;
+    LightHit light_hit = LightHit(vec3(0), vec3(0), vec2(0), vec2(0));
+    uint light = 0u, light_end = uint(INFINITE_LIGHT_COUNT);
+    if (!escapes) {
+        p = locate(hit, path.origin, path.direction);
+        light = p.light;
+        light_end = p.light + 1u;  // 0 where it is no light
+        light_hit = LightHit(p.position, p.geometric_normal, p.uv0, p.uv1);
+    }
+#if LIGHT_COUNT > 0
+    for (; light < light_end; ++light) path.radiance += collect_light(path, light, light_hit);
+#endif
+    if (escapes) {
+        counters.escaped += luminance(path.throughput);
         return false;
     }
-    SurfacePoint p = locate(hit, path.origin, path.direction);
-    if (p.light != NO_RECORD)
-        path.radiance += collect_light(path, p.light, LightHit(p.position, p.geometric_normal, p.uv0, p.uv1));
     ScatteringPoint s = scattering_point(p, path.direction, path.medium, false);
     // connect_lights, scatter_surfaces
     LightSample l = no_light_sample();
