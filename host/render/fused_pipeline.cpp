@@ -6,7 +6,7 @@ namespace etendue {
 
 Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const RenderSettings& s, const Buffer& film,
                                        const Buffer& counters)
-    : settings(s) {
+    : Pipeline(s) {
     trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", {{"Film", &film}, {"CounterSums", &counters}});
     // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
     const uint32_t pixels = settings.width * settings.height;

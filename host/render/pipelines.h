@@ -5,15 +5,16 @@
 namespace etendue {
 
 struct Renderer::Pipeline {
+    explicit Pipeline(const RenderSettings& settings) : settings(settings) {}
     virtual ~Pipeline() = default;
     // Runs passes [first, first + count).
     virtual void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) = 0;
+    RenderSettings settings;
 };
 
 struct Renderer::FusedPipeline : Pipeline {
     FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film, const Buffer& counters);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
-    RenderSettings settings;
     Kernel trace_paths;
     uint32_t groups = 1;
 };
@@ -24,7 +25,6 @@ struct Renderer::WavefrontPipeline : Pipeline {
     // One batch: `samples` samples of the pixels [first_pixel, first_pixel + pixels).
     void run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples,
                   KernelTimings& timings);
-    RenderSettings settings;
     uint32_t slots = 0;         // paths in memory
     uint32_t items_a_lane = 1;  // of a queue
     Buffer ray_origins, ray_directions, path_states, shadow_rays, ray_queue, queue_counts, hits, hit_instances;

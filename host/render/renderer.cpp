@@ -75,6 +75,14 @@ void Renderer::render_passes(uint32_t count) {
     last_pass_seconds_ = seconds / count;
 }
 
+void Renderer::restart(uint32_t seed) {
+    settings_.seed = pipeline_->settings.seed = seed;
+    film_.fill(0);
+    counter_sums_.fill(0);
+    counters_ = {};
+    passes_ = 0;
+}
+
 uint32_t Renderer::passes_in(double seconds) const {
     if (last_pass_seconds_ <= 0) return 1;
     return uint32_t(std::clamp(seconds / last_pass_seconds_, 1.0, 4096.0));

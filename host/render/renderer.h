@@ -49,6 +49,7 @@ class Renderer {
     Renderer(const Renderer&) = delete;
 
     void render_passes(uint32_t count);
+    void restart(uint32_t seed);  // an empty film again; kernels and timings stay
     // How many passes take about `seconds` by the speed of the last batch; 1 before the first.
     uint32_t passes_in(double seconds) const;
 

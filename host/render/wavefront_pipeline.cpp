@@ -12,7 +12,7 @@ constexpr uint32_t cpu_slots = 1 << 16, gpu_slots = 1 << 20;
 
 Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& s, const Buffer& film,
                                                const Buffer& counters)
-    : settings(s) {
+    : Pipeline(s) {
     const bool cpu = device.description.type == "CPU";
     const uint32_t pixels = settings.width * settings.height;
     const uint32_t wanted = cpu ? cpu_slots : gpu_slots;
