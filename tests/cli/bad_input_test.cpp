@@ -1,0 +1,128 @@
+// What goes wrong ends with one line on stderr, the exit code of its kind, and every file as it was.
+#include <functional>
+
+#include "tests/cli/program.h"
+
+using namespace etendue;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+struct BadInput {
+    std::string what;
+    Words words;
+    int code;
+    Words named;  // what the line must say
+    std::string scene = small_scene();
+    std::function<void(Program&)> prepare = [](Program&) {};
+};
+
+const Words render = {"render", "s.gltf", "-o", "out.exr", "--passes", "1", "--size", "4x4"};
+
+Words with(const Words& more) {
+    Words words = render;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+// out.exr is there before each of these runs, and must be untouched after it.
+void check(const std::vector<BadInput>& inputs) {
+    for (const BadInput& bad : inputs) {
+        CAPTURE(bad.what);
+        Program program;
+        write_text(program.folder / "out.exr", "precious");
+        write_text(program.folder / "s.gltf", bad.scene);
+        bad.prepare(program);
+        const auto entries = [&] {
+            Words names;
+            for (const auto& entry : std::filesystem::directory_iterator(program.folder.path))
+                if (const std::string name = entry.path().filename(); !name.starts_with("std")) names.push_back(name);
+            std::sort(names.begin(), names.end());
+            return names;
+        };
+        const Words before = entries();
+        const Run run = program.run(bad.words);
+        CAPTURE(run.err);
+        CHECK(run.code == bad.code);
+        CHECK(run.error_lines() == 1);
+        CHECK(run.err.starts_with("etendue: "));
+        CHECK(run.out.empty());
+        for (const std::string& word : bad.named) {
+            CAPTURE(word);
+            CHECK(run.err.find(word) != std::string::npos);
+        }
+        CHECK(read_text(program.folder / "out.exr") == "precious");
+        CHECK(entries() == before);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a bad scene is one line with file, place and what is allowed, and nothing is written") {
+    check({
+        {"missing", {"render", "nothing.gltf", "-o", "out.exr"}, 2, {"nothing.gltf"}},
+        {"a folder", {"render", ".", "-o", "out.exr"}, 2, {}},
+        {"not glTF", render, 2, {"s.gltf"}, "hello\n"},
+        {"an empty file", render, 2, {"s.gltf"}, ""},
+        {"cut short", render, 2, {"s.gltf"}, small_scene().substr(0, 200)},
+        {"nothing in it", render, 2, {"s.gltf", "empty"}, R"({"asset": {"version": "2.0"}})"},
+        {"a .glb cut short", {"render", "s.glb", "-o", "out.exr"}, 2, {"s.glb"}, "",
+         [](Program& p) { write_text(p.folder / "s.glb", std::string("glTF\2\0\0\0\0\1\0\0\x40\0\0\0JSON{\"asset\"", 28)); }},
+        {"an unknown class", render, 2, {"s.gltf", "/materials/0", "velvet", "lambertian"}, small_scene(R"({"class": "velvet"})")},
+        {"an unknown parameter", render, 2, {"s.gltf", "/materials/0", "shininess", "reflectance"},
+         small_scene(R"({"class": "lambertian", "shininess": 1})")},
+        {"a wrong type", render, 2, {"s.gltf", "/materials/0", "alpha"}, small_scene(R"({"class": "conductor", "alpha": "smooth"})")},
+        {"a value out of range", render, 2, {"s.gltf", "/materials/0", "alpha", "[0, 1]"},
+         small_scene(R"({"class": "conductor", "alpha": 2})")},
+        {"a reflectance above 1", render, 2, {"s.gltf", "/materials/0", "reflectance"},
+         small_scene(R"({"class": "lambertian", "reflectance": [0.5, 1.5, 0.5]})")},
+        {"a radius of zero", render, 2, {"s.gltf", "/nodes/0", "radius"}, small_scene(R"({"class": "lambertian"})", "0")},
+        {"a number too large", render, 2, {"s.gltf"}, small_scene(R"({"class": "lambertian"})", "1e999")},
+    });
+}
+
+TEST_CASE("bad options and files beside the scene are one line, and nothing is written") {
+    check({
+        {"no such receiver", with({"--receiver", "ear"}), 2, {"ear", "eye"}},
+        {"output folder missing", {"render", "s.gltf", "-o", "no/folder/x.exr"}, 2, {"no/folder"}},
+        {"output not .exr", {"render", "s.gltf", "-o", "x.png"}, 2, {"x.png", ".exr"}},
+        {"output a folder", {"render", "s.gltf", "-o", "dir.exr"}, 2, {"dir.exr"}, small_scene(),
+         [](Program& p) { std::filesystem::create_directory(p.folder / "dir.exr"); }},
+        {"stats that cannot be written", with({"--stats", "no/folder/s.json"}), 2, {"no/folder"}},
+        {"checkpoint that cannot be written", with({"--checkpoint", "no/folder/state"}), 2, {"no/folder"}},
+        {"environment missing", with({"--environment", "sky.hdr"}), 2, {"sky.hdr"}},
+        {"environment not an image", with({"--environment", "s.gltf"}), 2, {"s.gltf"}},
+        {"checkpoint missing", with({"--resume", "state"}), 2, {"state"}},
+        {"checkpoint that is none", with({"--resume", "out.exr"}), 2, {"out.exr"}},
+        {"shaders missing", with({"--shaders", "nowhere"}), 2, {"nowhere"}},
+        {"no command", {}, 2, {"render"}},
+        {"unknown command", {"paint"}, 2, {"paint", "render"}},
+        {"unknown option", with({"--sharpness", "3"}), 2, {"--sharpness"}},
+        {"no passes", with({"--passes", "0"}), 2, {"--passes"}},
+        {"passes and a time", with({"--time", "3"}), 2, {"--time"}},
+        {"size without width", with({"--size", "x4"}), 2, {"--size"}},
+        {"no such class", {"classes", "velvet"}, 2, {"velvet"}},
+        {"image to compare missing", {"compare", "a.exr", "b.exr"}, 2, {"a.exr"}},
+        {"image to compare that is none", {"compare", "out.exr", "out.exr"}, 2, {"out.exr"}},
+    });
+}
+
+TEST_CASE("without a usable device the exit code is 3, and nothing is written") {
+    check({
+        {"no such device", with({"--device", "no such card"}), 3, {"no such card"}},
+        {"no Vulkan device", render, 3, {"Vulkan"}, small_scene(),
+         [](Program& p) { p.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}}; }},
+        {"no Vulkan device to list", {"devices"}, 3, {"Vulkan"}, small_scene(),
+         [](Program& p) { p.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}}; }},
+    });
+}
+
+TEST_CASE("a folder in which nothing can be made is one line") {
+    Program program;  // /proc takes no new files, not even from the superuser
+    write_text(program.folder / "s.gltf", small_scene());
+    const Run run = program.run({"render", "s.gltf", "-o", "/proc/out.exr"});
+    CHECK(run.code == 2);
+    CHECK_MESSAGE(run.error_lines() == 1, run.err);
+    CHECK_MESSAGE(run.err.find("/proc/out.exr") != std::string::npos, run.err);
+}

@@ -1,0 +1,180 @@
+// The commands on good input: what they write, and with which exit code they end.
+#include <nlohmann/json.hpp>
+
+#include "host/image/exr.h"
+#include "tests/cli/program.h"
+
+using namespace etendue;
+
+namespace {
+
+const std::vector<std::string> render = {"render", "s.gltf", "-o", "out.exr", "--size", "16x8", "--seed", "7"};
+
+std::vector<std::string> with(std::vector<std::string> more) {
+    std::vector<std::string> words = render;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+double number(const Image& image, const char* name) { return std::get<double>(image.attributes.at(name)); }
+std::string text(const Image& image, const char* name) { return std::get<std::string>(image.attributes.at(name)); }
+std::span<const float> channel(const Image& image, const char* name) { return plane(image, size_t(find_channel(image, name))); }
+
+}  // namespace
+
+TEST_CASE("a render writes an image with its attributes, layers and statistics") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    const Run run = program.run(with({"--passes", "8", "--aovs", "--stats", "stats.json"}));
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    CHECK(run.out.empty());
+    // Progress into a file, not a terminal: plain lines without control characters.
+    CHECK(run.err.find('\r') == std::string::npos);
+    CHECK(run.err.find('\033') == std::string::npos);
+    CHECK(!run.err.empty());
+
+    const Image image = read_exr(program.folder / "out.exr");
+    CHECK(image.width == 16);
+    CHECK(image.height == 8);
+    for (const char* name : {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z",
+                             "error.R", "error.G", "error.B"}) {
+        CAPTURE(name);
+        REQUIRE(find_channel(image, name) >= 0);
+    }
+    // The pixel at the corner sees the environment; one in the middle the ball, 4 m away and facing the camera.
+    const size_t middle = 4 * 16 + 8;
+    CHECK(channel(image, "R")[0] == doctest::Approx(1));
+    CHECK(channel(image, "R")[middle] == doctest::Approx(0.5).epsilon(0.01));
+    CHECK(channel(image, "albedo.G")[middle] == doctest::Approx(0.5).epsilon(0.01));
+    CHECK(channel(image, "normal.Z")[middle] > 0.8);
+    CHECK(channel(image, "depth.Z")[middle] == doctest::Approx(4).epsilon(0.1));
+    CHECK(text(image, "scene") == "s.gltf");
+    CHECK(text(image, "command").starts_with("etendue render s.gltf -o out.exr"));
+    CHECK(number(image, "seed") == 7);
+    CHECK(number(image, "passes") == 8);
+    CHECK(number(image, "rays") >= 8 * 16 * 8);
+    CHECK(number(image, "seconds") > 0);
+    for (const char* name : {"device", "driver", "version"}) CHECK(!text(image, name).empty());
+
+    const auto stats = nlohmann::json::parse(read_text(program.folder / "stats.json"));
+    for (const char* member : {"passes", "forward_rays", "backward_rays", "seconds", "rays_per_second", "kernels",
+                               "estimated_relative_error", "compiled_kernels", "compile_seconds", "device", "driver",
+                               "peak_device_memory_bytes", "non_finite_samples"}) {
+        CAPTURE(member);
+        CHECK(stats.contains(member));
+    }
+    CHECK(stats["passes"] == 8);
+    CHECK(stats["non_finite_samples"] == 0);
+    CHECK(stats["backward_rays"].get<double>() >= 8 * 16 * 8);
+    CHECK(!stats["compiled_kernels"].empty());
+    for (const auto& [name, kernel] : stats["kernels"].items()) {
+        CAPTURE(name);
+        CHECK(kernel.contains("seconds"));
+        CHECK(kernel.contains("rays_per_second"));
+    }
+    // The balance adds up. Half of what meets the ball is absorbed, once or more often.
+    const auto& balance = stats.at("importance_balance");
+    double parts = balance["absorbed"].get<double>() + balance["escaped"].get<double>();
+    for (const auto& [cause, part] : balance["lost"].items()) parts += part.get<double>();
+    CHECK(parts == doctest::Approx(balance["emitted"].get<double>()));
+    CHECK(balance["absorbed"].get<double>() > 0.05);
+    CHECK(balance["absorbed"].get<double>() < 0.5);
+}
+
+TEST_CASE("without --aovs an image has its colours only, and --quiet says nothing") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    const Run run = program.run(with({"--passes", "2", "--quiet"}));
+    CHECK(run.code == 0);
+    CHECK(run.err.empty());
+    CHECK(run.out.empty());
+    CHECK(read_exr(program.folder / "out.exr").channels.size() == 3);
+}
+
+TEST_CASE("a resumed render is bit for bit the uninterrupted one") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    REQUIRE(program.run(with({"--passes", "13"})).code == 0);
+    const Image whole = read_exr(program.folder / "out.exr");
+    REQUIRE(program.run(with({"--passes", "5", "--checkpoint", "state"})).code == 0);
+    CHECK(read_exr(program.folder / "out.exr").values != whole.values);
+    const Run resumed = program.run(with({"--passes", "13", "--resume", "state"}));
+    CAPTURE(resumed.err);
+    REQUIRE(resumed.code == 0);
+    CHECK(read_exr(program.folder / "out.exr").values == whole.values);
+
+    // Another seed or another scene is not the same render, so not to be gone on with.
+    const Run refused = program.run(with({"--passes", "13", "--resume", "state", "--seed", "8"}));
+    CHECK(refused.code == 2);
+    CHECK(refused.error_lines() == 1);
+    write_text(program.folder / "s.gltf", small_scene(R"({"class": "lambertian", "reflectance": 0.25})"));
+    CHECK(program.run(with({"--passes", "13", "--resume", "state"})).code == 2);
+    CHECK(read_exr(program.folder / "out.exr").values == whole.values);
+}
+
+TEST_CASE("an interrupted render writes the image so far and ends with 130") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    for (const int signal : {SIGINT, SIGTERM}) {
+        std::filesystem::remove(program.folder / "out.exr");
+        write_text(program.folder / "stderr.txt", "");
+        const pid_t child = program.start(with({"--time", "600"}));
+        // Its first line of progress says that it renders.
+        for (int i = 0; i < 1200 && read_text(program.folder / "stderr.txt").find("pass") == std::string::npos; ++i) usleep(100000);
+        kill(child, signal);
+        const Run run = program.finish(child);
+        CAPTURE(run.err);
+        CHECK(run.code == 130);
+        const Image image = read_exr(program.folder / "out.exr");
+        CHECK(number(image, "passes") >= 1);
+        CHECK(channel(image, "R")[0] == doctest::Approx(1));
+    }
+}
+
+TEST_CASE("a render to an error stops when it is reached") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    CHECK(program.run(with({"--error", "0.02", "--stats", "stats.json"})).code == 0);
+    const auto stats = nlohmann::json::parse(read_text(program.folder / "stats.json"));
+    CHECK(stats["estimated_relative_error"].get<double>() <= 0.02);
+}
+
+TEST_CASE("compare ends with 1 beyond its limit") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    REQUIRE(program.run(with({"--passes", "4"})).code == 0);
+    std::filesystem::rename(program.folder / "out.exr", program.folder / "a.exr");
+    REQUIRE(program.run(with({"--passes", "4", "--seed", "8"})).code == 0);
+    const Run same = program.run({"compare", "a.exr", "a.exr", "--max-relmse", "1e-9"});
+    CHECK(same.code == 0);
+    CHECK(same.out.find("relMSE    0\n") != std::string::npos);
+    const Run other = program.run({"compare", "a.exr", "out.exr", "--max-relmse", "1e-9"});
+    CHECK(other.code == 1);
+    CHECK(other.err.empty());
+    CHECK(program.run({"compare", "a.exr", "out.exr"}).code == 0);
+    REQUIRE(program.run({"render", "s.gltf", "-o", "small.exr", "--size", "8x8", "--passes", "1"}).code == 0);
+    const Run sizes = program.run({"compare", "a.exr", "small.exr"});
+    CHECK(sizes.code == 2);
+    CHECK(sizes.error_lines() == 1);
+}
+
+TEST_CASE("inspect, classes and devices tell what there is") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    const Run inspect = program.run({"inspect", "s.gltf"});
+    CAPTURE(inspect.err);
+    CHECK(inspect.code == 0);
+    for (const char* word : {"sphere", "lambertian", "constant", "trace_paths", "eye"}) {
+        CAPTURE(word);
+        CHECK(inspect.out.find(word) != std::string::npos);
+    }
+    const Run classes = program.run({"classes", "conductor"});
+    CHECK(classes.code == 0);
+    for (const char* word : {"alpha", "[0, 1]", "reflectance", "multiscatter"}) CHECK(classes.out.find(word) != std::string::npos);
+    const Run devices = program.run({"devices"});
+    CHECK(devices.code == 0);
+    CHECK(devices.out.find("(default)") != std::string::npos);
+    CHECK(program.run({"--version"}).out.starts_with("etendue "));
+    CHECK(program.run({"render", "--help"}).code == 0);
+}
