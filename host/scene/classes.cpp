@@ -117,6 +117,8 @@ std::string Parameter::range() const {
 }
 
 ClassRegistry::ClassRegistry(ShaderSources sources) : sources_(std::move(sources)) {
+    if (!sources_.folder.empty() && !std::filesystem::exists(sources_.folder / "registry.h"))
+        fail_input("{}: not a folder of shaders: it has no registry.h", sources_.folder.string());
     const std::string text = sources_.get("registry.h");
     static const std::regex row(R"(X\(\s*(\d+)\s*,\s*(\w+)\s*,\s*(\w+)\s*\))");
     for (const InterfaceInfo& interface : all_interfaces()) {
