@@ -1,0 +1,95 @@
+"""Mitsuba 3: variant llvm_ad_rgb, integrator `path` without a depth limit, one kernel for the whole image."""
+import math
+import os
+import tempfile
+import time
+
+import numpy as np
+import scene_data
+import worker
+
+
+def bsdf(m):
+    kind = m["class"]
+    color = {"type": "rgb", "value": m.get("reflectance", [0.5] * 3)}
+    alpha = m.get("alpha", 0)
+    if m.get("multiscatter"):
+        raise scene_data.Unsupported("multiscatter")
+    if kind == "lambertian":
+        return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
+    if kind == "conductor":
+        if "eta" in m:
+            metal = {key: {"type": "rgb", "value": m[key]} for key in ("eta", "k")}
+        else:
+            metal = {"material": "none", "specular_reflectance": color}
+        rough = {"type": "roughconductor", "distribution": "ggx", "alpha": alpha} if alpha else {"type": "conductor"}
+        return {"type": "twosided", "bsdf": rough | metal}
+    if kind == "dielectric":
+        rough = {"type": "roughdielectric", "distribution": "ggx", "alpha": alpha} if alpha else {"type": "dielectric"}
+        return rough | {"int_ior": m["ior"], "ext_ior": 1.0}
+    raise scene_data.Unsupported(f"the surface '{kind}'")
+
+
+def ply(mi, positions, triangles):
+    mesh = mi.Mesh("mesh", len(positions), len(triangles))
+    parameters = mi.traverse(mesh)
+    parameters["vertex_positions"] = positions.astype(np.float32).ravel()
+    parameters["faces"] = triangles.ravel()
+    parameters.update()
+    handle, path = tempfile.mkstemp(".ply")
+    os.close(handle)
+    mesh.write_ply(path)
+    return path
+
+
+def scene_dict(mi, data, width, height, sampler="independent"):
+    camera = data["camera"]
+    turned = camera["matrix"] @ np.diag([-1.0, 1, -1, 1])  # Mitsuba's cameras look along +z, +x to the left
+    scene = {"type": "scene", "integrator": {"type": "path", "max_depth": -1}, "sensor": {
+        "type": "perspective", "fov": math.degrees(camera["yfov"]), "fov_axis": "y",
+        "near_clip": 1e-3, "far_clip": 1e6, "to_world": mi.ScalarTransform4f(turned),
+        "sampler": {"type": sampler},
+        "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb",
+                 "component_format": "float32", "rfilter": {"type": "box"}}}}
+
+    def add(shape, m):
+        shape["bsdf"] = bsdf(m)
+        if max(m["emission"]) > 0:
+            shape["emitter"] = {"type": "area", "radiance": {"type": "rgb", "value": m["emission"]}}
+        scene[f"shape{len(scene)}"] = shape
+
+    for positions, triangles, m in data["meshes"]:
+        corners = scene_data.as_quad(positions, triangles)
+        if corners is None:
+            add({"type": "ply", "filename": ply(mi, positions, triangles), "face_normals": True}, m)
+            continue
+        x, y = (corners[1] - corners[0]) / 2, (corners[3] - corners[0]) / 2
+        normal = np.cross(x, y)
+        to_world = np.eye(4)  # Mitsuba's own rectangle is [-1, 1]² in xy and faces +z
+        to_world[:3] = np.stack([x, y, normal / np.linalg.norm(normal), corners[0] + x + y], 1)
+        add({"type": "rectangle", "to_world": mi.ScalarTransform4f(to_world)}, m)
+    for centre, radius, m in data["spheres"]:
+        add({"type": "sphere", "center": centre, "radius": radius}, m)
+    if data["environment"]:
+        scene["environment"] = {"type": "constant", "radiance": {"type": "rgb", "value": data["environment"]}}
+    return scene
+
+
+def start(a):
+    import drjit as dr
+    import mitsuba as mi
+    mi.set_variant("llvm_ad_rgb")
+    dr.set_thread_count(a.threads)
+    scene = mi.load_dict(scene_dict(mi, scene_data.load(a.scene), a.width, a.height))
+
+    def render(samples, seed):
+        begin = time.perf_counter()
+        image = mi.render(scene, spp=samples, seed=seed)
+        dr.eval(image)
+        dr.sync_thread()
+        return np.array(image), time.perf_counter() - begin, samples
+
+    return f"Mitsuba {mi.__version__} llvm_ad_rgb path", render
+
+
+worker.serve(start)
