@@ -61,7 +61,7 @@ struct Bvh {
 
 struct BvhSettings {
     uint32_t max_leaf = bvh_max_leaf;  // primitives a leaf may hold, 1 to bvh_max_leaf
-    float primitive_cost = 1.0f;       // of one primitive test, in node visits
+    float primitive_cost = 1.5f;       // of one primitive test, in node visits
 };
 
 // Boxes must be finite and not inverted (they may be points). Throws Error for more than bvh_max_primitives.

@@ -1,7 +1,6 @@
 // sphere: centred at the origin, seen from outside. Poles on the z axis; u runs around it, v from +z to -z.
 #include "lib/accurate_math.glsl"
 #include "lib/frames.glsl"
-#include "lib/warps.glsl"
 
 struct Sphere {
     float radius;  //: required in (0, inf) m. Radius.
@@ -42,7 +41,8 @@ LocalPoint sphere_locate(Sphere r, vec3 origin, vec3 direction, GeometryHit hit)
 float sphere_area(Sphere r) { return 4.0 * PI * r.radius * r.radius; }
 
 GeometrySample sphere_sample(Sphere r, vec2 u) {
-    vec3 n = warp_sphere(u);
+    float z = 1.0 - 2.0 * u.x;
+    vec3 n = vec3(sqrt(4.0 * u.x * (1.0 - u.x)) * cos_sin_turns(u.y), z);
     return GeometrySample(r.radius * n, n, 1.0 / sphere_area(r));
 }
 

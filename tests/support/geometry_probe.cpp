@@ -153,7 +153,7 @@ void GeometryProbe::build(NodeFormat format) {
         trees.push_back(add_tree(mesh.triangles, boxes));
     }
     records_.layout();
-    Features features;
+    Features& features = features_;
     std::vector<const ClassInfo*> classes;
     for (const ClassInfo& info : registry_.classes(Interface::geometry))
         if (info.name != "triangle") classes.push_back(&info);
@@ -183,8 +183,7 @@ void GeometryProbe::build(NodeFormat format) {
     geometry_ = create_buffer(test_device(), records_.bytes(), "geometry records");
     sources_.generated["generated/geometry_classes.glsl"] =
         class_header(interface_info(Interface::geometry), classes);
-    defines_ =
-        features.defines() + fmt::format("#define HAS_FLOAT_NODES {}\n", int(format == NodeFormat::floats));
+    float_nodes_ = format == NodeFormat::floats;
 }
 
 UnrolledTraversal GeometryProbe::unroll() {
@@ -192,7 +191,7 @@ UnrolledTraversal GeometryProbe::unroll() {
     if (unrolled.glsl.empty()) return unrolled;
     nodes_ = create_buffer(test_device(), world_.nodes, "nodes");
     sources_.generated["generated/unrolled_traversal.glsl"] = unrolled.glsl;
-    defines_ += "#define HAS_UNROLLED_TRAVERSAL 1\n";
+    features_.unrolled_traversal = true;
     return unrolled;
 }
 
@@ -201,7 +200,8 @@ Kernel GeometryProbe::kernel(const std::string& name, const std::string& text, B
     ShaderSources sources = sources_;
     if (!text.empty()) sources.generated[name] = text;
     CompileOptions options;
-    options.defines = defines_ + defines;
+    options.defines =
+        features_.defines() + fmt::format("#define HAS_FLOAT_NODES {}\n", int(float_nodes_)) + defines;
     buffers["Nodes"] = &nodes_;
     buffers["Primitives"] = &primitives_;
     buffers["Transforms"] = &transforms_;

@@ -78,7 +78,8 @@ class GeometryProbe {
     SceneDescription scene_;
     World world_;
     ShaderSources sources_;
-    std::string defines_;
+    Features features_;
+    bool float_nodes_ = false;
     Buffer nodes_, primitives_, transforms_, geometry_;
 };
 
