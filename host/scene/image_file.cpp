@@ -16,6 +16,7 @@
 #include <climits>
 #include <cmath>
 #include <memory>
+#include <numeric>
 
 #include "host/error.h"
 #include "host/image/atomic_file.h"
@@ -66,6 +67,29 @@ std::string printable(std::string text) {
     return text;
 }
 
+// stb_image before 2.28 writes past its tables where a JPEG announces more than 256 Huffman codes in one of
+// them (ITU-T T.81, B.2.4.2: the 16 counts of codes by length). Walks the segments; what lies between is
+// coded data.
+void check_jpeg_tables(std::span<const uint8_t> bytes, const std::string& where) {
+    for (size_t at = 2; at + 4 <= bytes.size();) {
+        const uint8_t marker = bytes[at + 1];
+        const bool is_segment =
+            bytes[at] == 0xFF && marker >= 0xC0 && marker != 0xFF && (marker < 0xD0 || marker > 0xD9);
+        if (!is_segment) {
+            ++at;
+            continue;
+        }
+        const size_t end = std::min(bytes.size(), at + 2 + (size_t(bytes[at + 2]) << 8 | bytes[at + 3]));
+        for (size_t table = at + 4; marker == 0xC4 && table < end && table + 17 <= bytes.size();) {
+            const size_t codes = std::accumulate(&bytes[table + 1], &bytes[table + 1] + 16, size_t(0));
+            if (codes > 256)
+                fail_input("{}: the image is damaged: a Huffman table of {} codes", where, codes);
+            table += 17 + codes;
+        }
+        at = std::max(end, at + 4);
+    }
+}
+
 struct StbiFree {
     void operator()(void* pixels) const { stbi_image_free(pixels); }
 };
@@ -112,6 +136,7 @@ ImageDescription decode_image(std::span<const uint8_t> bytes, const std::string&
     } else if (is_radiance(bytes)) {
         image = decode_radiance(bytes, where, max_texels);
     } else {
+        if (!bytes.empty() && bytes[0] == 0xFF) check_jpeg_tables(bytes, where);
         int width = 0, height = 0, channels = 0, size = int(std::min(bytes.size(), size_t(INT_MAX)));
         if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
             fail_input("{}: not an image that can be read; PNG, JPEG, Radiance .hdr and OpenEXR are", where);

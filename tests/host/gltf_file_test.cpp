@@ -121,6 +121,10 @@ TEST_CASE("image files that are missing, damaged, or not finite are refused") {
     write_file(path, std::string("no image"));
     CHECK(image_error(path) ==
           path.string() + ": not an image that can be read; PNG, JPEG, Radiance .hdr and OpenEXR are");
+    std::string jpeg = "\xFF\xD8\xFF\xC4";  // a Huffman table of 16 x 255 codes
+    jpeg += std::string("\x10\x20\x00", 3) + std::string(16, '\xFF');
+    write_file(path, jpeg);
+    CHECK(image_error(path) == path.string() + ": the image is damaged: a Huffman table of 4080 codes");
     write_file(path, radiance_image().substr(0, radiance_image().size() - 6));
     CHECK(image_error(path) == path.string() + ": the image is truncated");
     write_file(path, std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000 +X 1000000\n"));
