@@ -1,6 +1,5 @@
 // Materials: metallic-roughness with the KHR extensions that the class `principled` models, emission and media.
 // occlusionTexture is not read: it stands in for light that is computed here.
-// media.
 #include <algorithm>
 #include <cmath>
 
