@@ -1,0 +1,28 @@
+// How bright an emissive texture is over parts of a surface: so that triangles it leaves dark are no lights.
+#pragma once
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "host/scene/texture_pack.h"
+
+namespace etendue {
+
+// Mean linear color of an image, over all texels.
+glm::vec3 mean_color(const ImageDescription& image);
+
+class EmissionTexture {
+  public:
+    EmissionTexture(const ImageDescription& image, const TextureUse& use);
+
+    // Mean luminance over a triangle given by its texture coordinates; 0 only where every texel that filtering can reach
+    // from the triangle is black.
+    float mean_luminance(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const;
+
+  private:
+    float texel(int x, int y) const;  // any x and y: wrapped as the texture says
+    TextureUse use_;
+    int width_, height_;
+    std::vector<float> luminance_;
+};
+
+}  // namespace etendue

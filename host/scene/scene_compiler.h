@@ -1,0 +1,94 @@
+// Builds a Scene from its description, step by step; each step needs what the ones before it made. Internal to
+// compile_scene: the steps stand in scene.cpp, scene_materials.cpp, scene_geometry.cpp and scene_lights.cpp.
+#pragma once
+#include "host/scene/light_tree.h"
+#include "host/scene/scene.h"
+#include "host/scene/texture_pack.h"
+
+namespace etendue {
+
+// Twin of struct Material in shaders/lib/materials.glsl; a test compares the layouts.
+struct MaterialRecord {
+    glm::vec4 emission, mean_emission;
+    uint32_t surface, inside, outside, flags, emission_texture, normal_texture;
+    float normal_scale;
+    uint32_t reserved;
+};
+enum MaterialFlag : uint32_t { emits_both_sides = 1, separates_media = 2, opaque = 4 };
+
+class SceneCompiler {
+  public:
+    SceneCompiler(Device& device, const SceneDescription& description, const SceneOptions& options);
+    Scene run();
+
+  private:
+    // scene.cpp
+    void add_class_files();
+    void add_media();
+    void write_headers();  // for the classes used and the records added so far
+    const ClassInfo& use_class(Interface interface, const ObjectDescription& object);
+    // A record; its reference can be looked up once all records of the interface are there.
+    struct Added {
+        const ClassInfo* info;
+        uint32_t nth;
+    };
+    Added add_record(Interface interface, const ObjectDescription& object, const std::optional<glm::dmat4>& placement = {});
+    std::vector<uint32_t> references(Interface interface, const std::vector<Added>& added);
+    // One dispatch of a kernel that asks the classes something, a lane an item.
+    void run_once(const std::string& file, uint32_t items, const BufferTable& buffers, std::initializer_list<PushValue> values);
+
+    // scene_materials.cpp
+    void add_materials();
+    void fill_emission(const EmissionDescription& emission, MaterialRecord& record);
+    void ask_opacity();
+    uint32_t medium_ref(const std::string& name, const std::string& where);
+    void add_textures();
+
+    // scene_geometry.cpp
+    void add_geometry();
+    std::vector<Box> shape_bounds(const std::vector<uint32_t>& refs);
+    void upload_world();
+    void add_receivers();
+    glm::dmat4 recentred(const glm::dmat4& world_from_local) const;
+
+    // scene_lights.cpp
+    void add_lights();
+    void drop_dark_triangles(std::vector<uint32_t>& primitives);
+    void measure_lights();
+    std::vector<LightBounds> run_measurement();
+    void scale_powers(std::vector<LightBounds>& bounds);
+
+    template <class T>
+    void upload(const std::string& name, const std::vector<T>& data) {
+        out_.buffers[name] = create_buffer(device_, data, name);
+    }
+
+    // An array that may exceed a binding: its address goes into the buffer LargeArrays (lib/large_arrays.glsl).
+    template <class T>
+    void upload_large(const std::string& name, const std::vector<T>& data, uint32_t slot, bool& by_address) {
+        upload(name, data);
+        const uint64_t limit = options_.binding_bytes ? options_.binding_bytes : device_.description.max_buffer_range;
+        by_address = out_.buffers[name].bytes() > limit;
+        large_arrays_[slot] = out_.buffers[name].address();
+        upload("LargeArrays", std::vector<uint64_t>(large_arrays_, large_arrays_ + 6));
+    }
+
+    Device& device_;
+    const SceneDescription& in_;
+    const SceneOptions& options_;
+    unsigned threads_;
+    Scene out_;
+    RecordResolver resolver_;
+    std::map<Interface, RecordBuffer> records_;
+    std::vector<TextureUse> textures_;
+    std::vector<glm::uvec4> environment_texels_;  // floats, as bits
+    std::vector<MaterialRecord> materials_;
+    World world_;
+    uint64_t large_arrays_[6] = {};
+    std::vector<uint32_t> lights_;           // RecordRefs
+    uint32_t first_area_light_ = 0;          // in lights_, before they are sorted
+    std::vector<uint32_t> area_primitives_;  // of each area light
+    std::vector<float> area_brightness_;     // of each area light: its part of the texture over the whole
+};
+
+}  // namespace etendue

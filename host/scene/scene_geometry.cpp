@@ -1,0 +1,78 @@
+// Geometry and receivers: everything that has a place.
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "host/error.h"
+#include "host/scene/scene_compiler.h"
+#include "host/scene/unrolled_traversal.h"
+
+namespace etendue {
+
+glm::dmat4 SceneCompiler::recentred(const glm::dmat4& world_from_local) const {
+    glm::dmat4 result = world_from_local;
+    result[3] -= glm::dvec4(out_.center, 0);
+    return result;
+}
+
+void SceneCompiler::add_geometry() {
+    std::vector<Added> shapes;
+    for (const PlacedObject& shape : in_.shapes) shapes.push_back(add_record(Interface::geometry, shape.object));
+    const auto refs = references(Interface::geometry, shapes);
+    world_ = build_world(in_, shape_bounds(refs), refs, threads_, out_.features);
+    const UnrolledTraversal unrolled = unroll_traversal(world_, in_);
+    out_.features.unrolled_traversal = !unrolled.glsl.empty();
+    out_.sources.generated["generated/unrolled_traversal.glsl"] = unrolled.glsl;
+    out_.center = world_.center;
+    out_.radius = world_.bounds.empty() ? 0.0f : 0.5f * glm::length(world_.bounds.hi - world_.bounds.lo);
+    out_.triangles = world_.triangles, out_.instances = world_.instances, out_.shapes = in_.shapes.size();
+    out_.bvh_seconds = world_.statistics.seconds, out_.bvh_cost = world_.statistics.sah_cost;
+    out_.bvh_depth = world_.statistics.depth;
+}
+
+// The classes themselves say how large their objects are: on the device, so that a class needs no host code.
+std::vector<Box> SceneCompiler::shape_bounds(const std::vector<uint32_t>& refs) {
+    if (refs.empty()) return {};
+    write_headers();
+    upload("GeometryRecords", records_[Interface::geometry].bytes());
+    const Buffer in = create_buffer(device_, refs, "ShapeRefs");
+    const Buffer out(device_, refs.size() * 24, "ShapeBounds");
+    run_once("kernels/bound_shapes.comp", uint32_t(refs.size()), {{"ShapeRefs", &in}, {"ShapeBounds", &out}},
+             {{"count", uint32_t(refs.size())}});
+    const auto corners = out.read_array<glm::vec3>(2 * refs.size());
+    std::vector<Box> boxes;
+    for (size_t i = 0; i < refs.size(); ++i) boxes.push_back({corners[2 * i], corners[2 * i + 1]});
+    return boxes;
+}
+
+void SceneCompiler::upload_world() {
+    Features& f = out_.features;
+    upload_large("Nodes", world_.nodes, 0, f.nodes_by_address);
+    upload_large("Primitives", world_.primitives, 1, f.primitives_by_address);
+    upload_large("Vertices", world_.vertices, 2, f.vertices_by_address);
+    upload_large("TriangleIndices", world_.triangle_indices, 3, f.triangle_indices_by_address);
+    upload("Transforms", world_.transforms);
+}
+
+void SceneCompiler::add_receivers() {
+    std::vector<Added> added;
+    for (const PlacedObject& receiver : in_.receivers) {
+        ObjectDescription object = receiver.object;
+        const float aspect = object.parameters.value("aspect_ratio", 0.0f);
+        object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
+        added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local)));
+        out_.receivers.push_back({receiver.name, no_record, aspect});
+    }
+    if (in_.receivers.empty() && out_.radius > 0) {
+        // glTF leaves the view to the program where a file has no camera: the whole scene from the front, a little above.
+        const double yfov = 0.6;
+        const glm::dvec3 from = glm::normalize(glm::dvec3(0.35, 0.25, 1.0)) * (double(out_.radius) / std::sin(yfov / 2));
+        const glm::dmat4 placement = glm::inverse(glm::lookAt(from, glm::dvec3(0), glm::dvec3(0, 1, 0)));
+        added.push_back(add_record(Interface::receiver, {"perspective", {{"yfov", yfov}}, ""}, placement));
+        out_.receivers.push_back({"(default)", no_record, 0});
+        out_.warnings.push_back(fmt::format("{}: the scene has no camera: all of it is shown from the front", in_.file.string()));
+    }
+    const auto refs = references(Interface::receiver, added);
+    for (size_t i = 0; i < refs.size(); ++i) out_.receivers[i].ref = refs[i];
+}
+
+}  // namespace etendue

@@ -1,0 +1,154 @@
+// Lights: which there are, and what they say of their power and extent.
+#include <algorithm>
+#include <cstring>
+
+#include "host/error.h"
+#include "host/scene/emission_texture.h"
+#include "host/scene/scene_compiler.h"
+
+namespace etendue {
+namespace {
+
+std::vector<std::byte> area_record(const ClassInfo& info, uint32_t primitive, uint32_t material) {
+    std::vector<std::byte> record(info.stride);
+    for (const Parameter& p : info.parameters) {
+        if (p.member.name == "primitive") std::memcpy(record.data() + p.member.offset, &primitive, 4);
+        if (p.member.name == "material") std::memcpy(record.data() + p.member.offset, &material, 4);
+    }
+    return record;
+}
+
+}  // namespace
+
+// Lights at infinity come first in the list (lib/light_selection.glsl).
+void SceneCompiler::add_lights() {
+    std::vector<Added> finite, infinite;
+    if (!options_.environment.empty()) {
+        ObjectDescription image{"image", {{"file", std::filesystem::absolute(options_.environment).string()}}, "--environment"};
+        infinite.push_back(add_record(Interface::light, image));
+    } else if (in_.environment) {
+        infinite.push_back(add_record(Interface::light, *in_.environment));
+    }
+    for (const PlacedObject& light : in_.lights) {
+        const Added added = add_record(Interface::light, light.object, recentred(light.world_from_local));
+        finite.push_back(added);  // sorted by what measure_lights finds
+    }
+    for (uint32_t i = 0; i < world_.world_primitives; ++i) {
+        const PrimitiveRecord& p = world_.primitives[i];
+        const glm::vec4 e = materials_[p.material].emission;
+        if (primitive_kind(p) != PrimitiveKind::instance && (e.x > 0 || e.y > 0 || e.z > 0)) area_primitives_.push_back(i);
+    }
+    drop_dark_triangles(area_primitives_);
+    std::vector<Added> area;
+    if (!area_primitives_.empty()) {
+        const ClassInfo& info = use_class(Interface::light, {"area", nlohmann::json::object(), ""});
+        for (uint32_t i : area_primitives_) {
+            records_[Interface::light].add(info, area_record(info, i, world_.primitives[i].material));
+            area.push_back({&info, uint32_t(area.size())});
+        }
+    }
+    std::vector<Added> all = infinite;
+    all.insert(all.end(), finite.begin(), finite.end());
+    all.insert(all.end(), area.begin(), area.end());
+    lights_ = references(Interface::light, all);
+    first_area_light_ = uint32_t(infinite.size() + finite.size());
+    out_.lights = lights_.size();
+    out_.features.light_count = uint32_t(lights_.size());
+}
+
+// Triangles that an emissive texture leaves dark are no lights; the others are as bright as their part of the texture.
+void SceneCompiler::drop_dark_triangles(std::vector<uint32_t>& primitives) {
+    std::map<uint32_t, EmissionTexture> textures;  // by index of the Texture
+    std::vector<uint32_t> kept;
+    for (uint32_t i : primitives) {
+        const PrimitiveRecord& p = world_.primitives[i];
+        const MaterialRecord& m = materials_[p.material];
+        float brightness = 1;
+        if (m.emission_texture != no_record && primitive_kind(p) == PrimitiveKind::triangle && !world_.triangle_indices.empty()) {
+            const TextureUse& use = textures_[m.emission_texture];
+            const auto& texture = textures.try_emplace(m.emission_texture, in_.images[use.image], use).first->second;
+            const glm::uvec3 t = world_.triangle_indices[p.attributes & 0x3FFFFFFFu];
+            const VertexRecord &a = world_.vertices[t.x], &b = world_.vertices[t.y], &c = world_.vertices[t.z];
+            const glm::vec2 uv0[3] = {a.uv0, b.uv0, c.uv0}, uv1[3] = {a.uv1, b.uv1, c.uv1};
+            const auto y = [](glm::vec4 v) { return glm::dot(glm::vec3(v), glm::vec3(0.2126f, 0.7152f, 0.0722f)); };
+            const float mean = y(m.mean_emission) / y(m.emission);  // of the whole texture
+            brightness = mean > 0 ? texture.mean_luminance(uv0, uv1) / mean : 0.0f;
+        }
+        if (brightness <= 0) continue;
+        kept.push_back(i);
+        area_brightness_.push_back(brightness);
+    }
+    primitives = std::move(kept);
+}
+
+// Power and extent of every light, found out by the classes on the device; then the order of the list, the tree, and the scale of
+// materials whose emission is given as the power of the whole object.
+void SceneCompiler::measure_lights() {
+    for (const InterfaceInfo& interface : all_interfaces())
+        upload(interface.buffer, records_[interface.interface].bytes());
+    upload_large("EnvironmentTexels", environment_texels_, 5, out_.features.environment_texels_by_address);
+    upload("Materials", materials_);
+    upload_world();
+    upload("Lights", lights_);
+    if (lights_.empty()) {
+        upload("LightNodes", std::vector<uint32_t>());
+        upload("LightTrails", std::vector<uint32_t>());
+        return;
+    }
+    std::vector<LightBounds> bounds = run_measurement();
+    scale_powers(bounds);
+
+    std::vector<uint32_t> order(lights_.size());
+    for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return is_at_infinity(bounds[i]); });
+    std::vector<uint32_t> sorted_lights;
+    std::vector<LightBounds> sorted_bounds;
+    for (uint32_t position = 0; position < order.size(); ++position) {
+        const uint32_t i = order[position];
+        sorted_lights.push_back(lights_[i]);
+        sorted_bounds.push_back(bounds[i]);
+        out_.power += bounds[i].power;
+        if (i >= first_area_light_) world_.primitives[area_primitives_[i - first_area_light_]].light = position;
+    }
+    const LightTree tree = build_light_tree(sorted_bounds);
+    out_.features.light_tree = tree.is_tree;
+    out_.features.infinite_light_count = tree.infinite_count;
+    upload("Lights", sorted_lights);
+    upload("LightNodes", tree.nodes);
+    upload("LightTrails", tree.trails);
+    out_.buffers["Primitives"].write(world_.primitives.data(), world_.primitives.size() * sizeof(PrimitiveRecord));
+}
+
+std::vector<LightBounds> SceneCompiler::run_measurement() {
+    const Buffer out(device_, lights_.size() * sizeof(LightBounds), "LightBoundsTable");
+    const uint32_t count = uint32_t(lights_.size());
+    run_once("kernels/measure_lights.comp", count, {{"LightBoundsTable", &out}},
+             {{"light_count", count}, {"scene_radius", out_.radius}});
+    auto bounds = out.read_array<LightBounds>(count);
+    for (size_t i = 0; i < area_brightness_.size(); ++i) bounds[first_area_light_ + i].power *= area_brightness_[i];
+    return bounds;
+}
+
+void SceneCompiler::scale_powers(std::vector<LightBounds>& bounds) {
+    using Quantity = EmissionDescription::Quantity;
+    std::vector<double> totals(materials_.size());
+    for (size_t i = 0; i < area_primitives_.size(); ++i)
+        totals[world_.primitives[area_primitives_[i]].material] += bounds[first_area_light_ + i].power;
+    std::vector<float> scales(materials_.size(), 1.0f);
+    bool changed = false;
+    for (size_t m = 0; m < materials_.size(); ++m) {
+        const auto& e = in_.materials[m].emission;
+        if (!e || totals[m] <= 0 || (e->quantity != Quantity::power && e->quantity != Quantity::flux)) continue;
+        const double wanted = glm::dot(spectral_value(e->value, in_, e->where), glm::vec3(0.2126f, 0.7152f, 0.0722f));
+        scales[m] = float(wanted / totals[m]);
+        materials_[m].emission *= scales[m];
+        materials_[m].mean_emission *= scales[m];
+        changed = true;
+    }
+    if (!changed) return;
+    for (size_t i = 0; i < area_primitives_.size(); ++i)
+        bounds[first_area_light_ + i].power *= scales[world_.primitives[area_primitives_[i]].material];
+    upload("Materials", materials_);
+}
+
+}  // namespace etendue

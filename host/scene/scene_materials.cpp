@@ -1,0 +1,85 @@
+// Materials: surfaces, media on their sides, emission, textures.
+#include "host/error.h"
+#include "host/scene/emission_texture.h"
+#include "host/scene/scene_compiler.h"
+
+namespace etendue {
+
+uint32_t SceneCompiler::medium_ref(const std::string& name, const std::string& where) {
+    if (name.empty()) return no_record;
+    const auto found = resolver_.media.find(name);
+    if (found == resolver_.media.end()) fail_input("{}: {} is not the name of a medium", message_place(in_, where), name);
+    return found->second;
+}
+
+void SceneCompiler::add_materials() {
+    std::vector<Added> surfaces;
+    for (const MaterialDescription& m : in_.materials) {
+        MaterialRecord record{};
+        record.inside = medium_ref(m.inside, m.surface.where);
+        record.outside = medium_ref(m.outside, m.surface.where);
+        if (m.double_sided) record.flags |= emits_both_sides;
+        if (!m.inside.empty() || !m.outside.empty()) record.flags |= separates_media;
+        record.emission_texture = record.normal_texture = no_record;
+        if (m.normal_texture.is_object()) {
+            record.normal_texture = resolver_.texture(m.normal_texture, false, m.surface.where + "/normalTexture");
+            record.normal_scale = m.normal_texture.value("scale", 1.0f);
+            out_.features.normal_maps = true;
+        }
+        if (m.emission) fill_emission(*m.emission, record);
+        surfaces.push_back(add_record(Interface::surface, m.surface));
+        materials_.push_back(record);
+    }
+    const auto refs = references(Interface::surface, surfaces);
+    for (size_t i = 0; i < refs.size(); ++i) materials_[i].surface = refs[i];
+    out_.materials = materials_.size();
+    ask_opacity();
+}
+
+void SceneCompiler::ask_opacity() {
+    if (materials_.empty()) return;
+    const uint32_t count = uint32_t(materials_.size());
+    write_headers();
+    upload("SurfaceRecords", records_[Interface::surface].bytes());
+    upload("MediumRecords", records_[Interface::medium].bytes());
+    upload("Materials", materials_);
+    const Buffer out(device_, count * 4, "MaterialOpacity");
+    run_once("kernels/measure_materials.comp", count, {{"MaterialOpacity", &out}}, {{"count", count}});
+    const auto is_opaque = out.read_array<uint32_t>(count);
+    for (uint32_t i = 0; i < count; ++i) {
+        if (is_opaque[i]) materials_[i].flags |= opaque;
+        else out_.features.straight = true;
+    }
+}
+
+void SceneCompiler::fill_emission(const EmissionDescription& e, MaterialRecord& record) {
+    glm::vec3 value = spectral_value(e.value, in_, e.where);
+    if (!e.spectrum.is_null()) {
+        glm::vec3 spectrum = spectral_value(e.spectrum, in_, e.where + "/spectrum");
+        if (e.quantity != EmissionDescription::Quantity::radiance) {
+            // Photometric quantities and powers fix the scale: the spectrum only gives the colour.
+            const float y = glm::dot(spectrum, glm::vec3(0.2126f, 0.7152f, 0.0722f));
+            if (!(y > 0)) fail_input("{}/spectrum: must not be black", message_place(in_, e.where));
+            spectrum /= y;
+        }
+        value *= spectrum;
+    }
+    if (glm::any(glm::lessThan(value, glm::vec3(0)))) fail_input("{}: emission must not be negative", message_place(in_, e.where));
+    record.emission = record.mean_emission = glm::vec4(value, 0);
+    if (e.texture.is_object()) {
+        record.emission_texture = resolver_.texture(e.texture, true, e.where);
+        record.mean_emission *= glm::vec4(mean_color(in_.images[textures_[record.emission_texture].image]), 0);
+    }
+}
+
+void SceneCompiler::add_textures() {
+    out_.features.textures = !textures_.empty();
+    out_.textures = textures_.size();
+    if (textures_.empty()) return;
+    const PackedTextures packed = pack_textures(in_.images, textures_);
+    out_.features.texture_formats = packed.formats;
+    upload_large("Texels", packed.texels, 4, out_.features.texels_by_address);
+    upload("Textures", packed.textures);
+}
+
+}  // namespace etendue
