@@ -1,5 +1,4 @@
-// Accessors: checked once against their views, then read in bulk, without a virtual call or a lookup an
-// element.
+// Accessors: checked once against their views, then read in bulk, with no virtual call or lookup per element.
 #include <algorithm>
 #include <cstring>
 #include <limits>

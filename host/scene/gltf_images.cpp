@@ -1,5 +1,4 @@
-// Textures and images. Only those that a material refers to are kept, and their images decoded, several at a
-// time.
+// Textures and images. Only those that a material refers to are kept; their images are decoded in parallel.
 #include <atomic>
 #include <exception>
 #include <thread>

@@ -1,5 +1,4 @@
-// The node hierarchy: checked to be a forest, then walked from the scene's roots with transforms in double
-// precision.
+// The node hierarchy: checked to be a forest, then walked from the roots, with transforms in double precision.
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
