@@ -1,4 +1,4 @@
-// Materials: metallic-roughness with the KHR extensions that the class `principled` models, emission and media.
+// Materials: metallic-roughness with the KHR extensions that `principled` models, emission and media.
 // occlusionTexture is not read: it stands in for light that is computed here.
 #include <algorithm>
 #include <cmath>
