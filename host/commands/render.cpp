@@ -71,11 +71,12 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
     for (const auto& [name, t] : renderer.timings())
         timings[name] = {{"seconds", t.seconds}, {"dispatches", t.dispatches},
                          {"rays_per_second", t.seconds > 0 ? double(c.rays + c.shadow_rays) / t.seconds : 0.0}};
-    // Every backward path starts with importance 1; what is neither escaped nor lost was absorbed.
+    // Backward rays carry importance: 1 a path. What leaves the scene is received by its surroundings; what is neither received
+    // nor lost was absorbed.
     const double paths = double(renderer.passes()) * options.size->width * options.size->height;
-    nlohmann::json balance = {{"unit", "share of the importance that left the receiver"},
+    nlohmann::json balance = {{"unit", "share of the importance that the receiver sent out"},
                               {"emitted", 1.0},
-                              {"escaped", c.escaped / paths},
+                              {"received", c.escaped / paths},
                               {"absorbed", 1.0 - (c.escaped + c.depth_limit_lost) / paths},
                               {"lost", {{"depth_limit", c.depth_limit_lost / paths},
                                         {"non_finite", double(c.non_finite) / paths}}}};
@@ -89,7 +90,7 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
             {"algorithm", "backward"}, {"schedule", schedule_name(renderer.schedule())},
             {"kernels", timings}, {"compiled_kernels", kernels}, {"compile_seconds", compile_seconds},
             {"peak_device_memory_bytes", device.peak_bytes_allocated},
-            {"light_power_lm", scene.power}, {"importance_balance", balance}, {"non_finite_samples", c.non_finite}};
+            {"light_power_lm", scene.power}, {"power_balance", balance}, {"non_finite_samples", c.non_finite}};
 }
 
 void write_stats(const std::filesystem::path& path, const nlohmann::json& json) {
