@@ -1,5 +1,5 @@
-// A surface that emits: one record for every emissive triangle or shape. Filled by the host from the scene's materials.
-// The emission itself, with its texture and sides, belongs to the material.
+// A surface that emits: one record for every emissive triangle or shape. Filled by the host from the scene's
+// materials. The emission itself, with its texture and sides, belongs to the material.
 #include "lib/materials.glsl"
 #include "lib/primitives.glsl"
 
@@ -8,10 +8,19 @@ struct AreaLight {
     uint material;
 };
 
-// From a density per area at a point that is seen along `direction` to one per solid angle; 0 where it has no finite value.
+// From a density per area at a point that is seen along `direction` to one per solid angle; 0 where it has no
+// finite value.
 float area_solid_angle_pdf(float pdf_area, float distance_squared, float cosine) {
     float pdf = pdf_area * distance_squared / abs(cosine);
     return pdf > 0.0 && pdf < INFINITY ? pdf : 0.0;
+}
+
+// A point of the surface, off it on the side of `reference` by more than rounding: the way there meets the light itself no
+// earlier, however grazing. Without it a curved light hides part of its own rim.
+vec3 lifted_point(GeometrySample g, vec3 reference, float cosine) {
+    vec3 a = abs(g.position), b = abs(reference);
+    float lift = 8.0 * EPSILON * (max(a.x, max(a.y, a.z)) + max(b.x, max(b.y, b.z)));
+    return g.position + (cosine < 0.0 ? lift : -lift) * g.normal;
 }
 
 LightSample area_sample_towards(AreaLight r, vec3 point, vec2 u) {
@@ -19,9 +28,11 @@ LightSample area_sample_towards(AreaLight r, vec3 point, vec2 u) {
     vec3 d = g.position - point;
     float distance_squared = dot(d, d);
     if (!(distance_squared > 0.0)) return no_light_sample();
-    float distance = sqrt(distance_squared);
-    vec3 direction = d / distance;
-    float cosine = dot(g.normal, direction);
+    float cosine = dot(g.normal, d) * inversesqrt(distance_squared);
+    vec3 lifted = lifted_point(g, point, cosine) - point;
+    float distance = length(lifted);
+    if (!(distance > 0.0)) return no_light_sample();
+    vec3 direction = lifted / distance;
     vec2 uv0 = vec2(0), uv1 = vec2(0);
     if (materials[r.material].emission_texture.index != NO_RECORD) primitive_uv(r.primitive, g.position, uv0, uv1);
     Spectrum radiance = material_emission(r.material, cosine < 0.0, uv0, uv1);
@@ -38,8 +49,8 @@ Spectrum area_radiance(AreaLight r, vec3 direction, LightHit hit) {
     return material_emission(r.material, dot(hit.normal, direction) < 0.0, hit.uv0, hit.uv1);
 }
 
-// Luminance, averaged over the surface. With a texture over 4 x 4 of its points; a part that they miss may still hold a bright
-// texel, so it keeps a hundredth of the material's own mean.
+// Luminance, averaged over the surface. With a texture over 4 x 4 of its points; a part that they miss may
+// still hold a bright texel, so it keeps a hundredth of the material's own mean.
 float area_mean_luminance(AreaLight r) {
     float mean = luminance(material_mean_emission(r.material));
     if (materials[r.material].emission_texture.index == NO_RECORD) return mean;
