@@ -45,7 +45,7 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
             C{"gold, alpha .01", {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.01}}, 1, 1, {}, 0, 0.01},
             C{"gold, alpha .3", {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.3}}},
             C{"white, alpha .3", {{"reflectance", 1}, {"alpha", 0.3}}},
-                C{"white, alpha 1", {{"reflectance", 1}, {"alpha", 1}}},
+            C{"white, alpha 1", {{"reflectance", 1}, {"alpha", 1}}},
             C{"lossless, alpha .01",
               {{"reflectance", 1}, {"alpha", 0.01}, {"multiscatter", true}},
               1,
@@ -77,6 +77,7 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
               1,
               1.0,
               0.005},
+            C{"grey, multiscatter, alpha 1", {{"reflectance", 0.5}, {"alpha", 1}, {"multiscatter", true}}},
             C{"gold, multiscatter, alpha .5",
               {{"eta", gold_eta}, {"k", gold_k}, {"alpha", 0.5}, {"multiscatter", true}}}};
     }
