@@ -28,18 +28,22 @@ glm::uvec4 read_texel(const ImageDescription& image, uint32_t x, uint32_t y) {
     const size_t at = (size_t(y) * image.width + x) * 4;
     if (image.rgba32f.empty()) {
         const uint8_t* p = &image.rgba8[at];
-        return pack(srgb_to_linear(p[0] / 255.0f), srgb_to_linear(p[1] / 255.0f), srgb_to_linear(p[2] / 255.0f));
+        return pack(srgb_to_linear(p[0] / 255.0f), srgb_to_linear(p[1] / 255.0f),
+                    srgb_to_linear(p[2] / 255.0f));
     }
     const float* p = &image.rgba32f[at];
     for (int c = 0; c < 3; ++c)
         if (!(p[c] >= 0) || std::isinf(p[c]))
-            fail_input("{}: the texel in column {}, row {} of this environment image is {}; radiance is a finite number, "
-                       "at least 0",
-                       image.name, x, y, p[c]);
+            fail_input(
+                "{}: the texel in column {}, row {} of this environment image is {}; radiance is a finite "
+                "number, "
+                "at least 0",
+                image.name, x, y, p[c]);
     return pack(p[0], p[1], p[2]);
 }
 
-// Polar angle of the upper edge of cell row j. Edges lie at the poles and along the centres of the image's rows.
+// Polar angle of the upper edge of cell row j. Edges lie at the poles and along the centres of the image's
+// rows.
 double edge_angle(uint32_t j, uint32_t height) {
     if (j == 0) return 0;
     return j > height ? std::numbers::pi : std::numbers::pi * (j - 0.5) / height;
@@ -75,7 +79,8 @@ EnvironmentMap build_environment_map(const ImageDescription& image) {
     const uint32_t width = image.width, height = image.height;
     const size_t texel_count = size_t(width) * height;
     if (width == 0 || height == 0 || width > 65536 || height > 65536)
-        fail_input("{}: an environment image is 1 to 65536 texels wide and high, not {} x {}", image.name, width, height);
+        fail_input("{}: an environment image is 1 to 65536 texels wide and high, not {} x {}", image.name,
+                   width, height);
     if (image.rgba32f.size() != texel_count * 4 && image.rgba8.size() != texel_count * 4)
         fail_input("{}: the image holds too few texels for {} x {}", image.name, width, height);
 
@@ -84,7 +89,8 @@ EnvironmentMap build_environment_map(const ImageDescription& image) {
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x) map.texels[size_t(y + 1) * width + x] = read_texel(image, x, y);
     std::copy_n(map.texels.begin() + width, width, map.texels.begin());
-    std::copy_n(map.texels.begin() + size_t(height) * width, width, map.texels.begin() + size_t(height + 1) * width);
+    std::copy_n(map.texels.begin() + size_t(height) * width, width,
+                map.texels.begin() + size_t(height + 1) * width);
 
     const uint32_t alias_bits = std::max<uint32_t>(1, uint32_t(std::bit_width(width - 1)));
     const double threshold_scale = std::exp2(32 - int(alias_bits));
@@ -96,7 +102,8 @@ EnvironmentMap build_environment_map(const ImageDescription& image) {
         double sum = 0;
         for (uint32_t x = 0; x < width; ++x) {
             const uint32_t right = x + 1 < width ? x + 1 : 0;
-            cells[x] = 0.25 * (luminance(top[x]) + luminance(top[right]) + luminance(bottom[x]) + luminance(bottom[right]));
+            cells[x] = 0.25 * (luminance(top[x]) + luminance(top[right]) + luminance(bottom[x]) +
+                               luminance(bottom[right]));
             sum += cells[x];
         }
         const double a = edge_angle(j, height), b = edge_angle(j + 1, height);
@@ -106,7 +113,8 @@ EnvironmentMap build_environment_map(const ImageDescription& image) {
         integral += row_weights[j] * (2 * std::numbers::pi / width);
         const AliasTable table = build_alias_table(cells);
         for (uint32_t x = 0; x < width; ++x) {
-            const double threshold = std::min(std::round(table.threshold[x] * threshold_scale), threshold_scale - 1);
+            const double threshold =
+                std::min(std::round(table.threshold[x] * threshold_scale), threshold_scale - 1);
             // Where rounding could lead away from a column that is always its own: its alias is itself.
             top[x].w = uint32_t(threshold) << alias_bits | table.alias[x];
         }

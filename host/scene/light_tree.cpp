@@ -35,12 +35,13 @@ Cone unite(Cone a, Cone b) {
     return {glm::normalize(rotate_about(a.axis, glm::normalize(turn), angle - a.angle)), angle};
 }
 
-// Integral over directions of cos(max(0, angle to the axis - normals)), up to normals + emission: the paper's M_Omega.
+// Integral over directions of cos(max(0, angle to the axis - normals)), up to normals + emission: the paper's
+// M_Omega.
 double orientation_measure(double normals, double emission) {
     const double end = std::min(normals + emission, pi);
-    return 2 * pi * (1 - std::cos(normals)) +
-           pi / 2 * (2 * end * std::sin(normals) - std::cos(normals - 2 * end) - 2 * normals * std::sin(normals) +
-                     std::cos(normals));
+    return 2 * pi * (1 - std::cos(normals)) + pi / 2 *
+                                                  (2 * end * std::sin(normals) - std::cos(normals - 2 * end) -
+                                                   2 * normals * std::sin(normals) + std::cos(normals));
 }
 
 double safe_acos(double c) { return std::acos(std::clamp(c, -1.0, 1.0)); }
@@ -112,7 +113,8 @@ struct Builder {
     static void store(LightNode& node, int k, const Subtree& s) {
         const glm::dvec3 lo(s.lo), hi(s.hi);
         const glm::vec3 center(0.5 * (lo + hi));
-        const glm::dvec3 corner = glm::max(glm::abs(hi - glm::dvec3(center)), glm::abs(lo - glm::dvec3(center)));
+        const glm::dvec3 corner =
+            glm::max(glm::abs(hi - glm::dvec3(center)), glm::abs(lo - glm::dvec3(center)));
         node.x[k] = center.x, node.y[k] = center.y, node.z[k] = center.z;
         node.radius[k] = float(glm::length(corner) * (1 + 1e-6));
         node.intensity[k] = float(s.intensity);
@@ -123,8 +125,12 @@ struct Builder {
 
     static Subtree leaf(const Item& item) {
         const LightBounds& b = item.bounds;
-        return {b.lo, b.hi, item.intensity, Cone{glm::dvec3(b.axis), safe_acos(b.cos_normals)},
-                safe_acos(b.cos_emission), leaf_bit | item.light};
+        return {b.lo,
+                b.hi,
+                item.intensity,
+                Cone{glm::dvec3(b.axis), safe_acos(b.cos_normals)},
+                safe_acos(b.cos_emission),
+                leaf_bit | item.light};
     }
 
     // Chooses where to cut items [first, last) in two and orders them accordingly.
@@ -160,9 +166,9 @@ struct Builder {
             }
         }
         if (best_axis >= 0) {
-            const auto middle = std::stable_partition(items.begin() + first, items.begin() + last, [&](const Item& item) {
-                return bin_of(item, best_axis) < best_bin;
-            });
+            const auto middle =
+                std::stable_partition(items.begin() + first, items.begin() + last,
+                                      [&](const Item& item) { return bin_of(item, best_axis) < best_bin; });
             return size_t(middle - items.begin());
         }
         const int axis = extent.x >= longest ? 0 : extent.y >= longest ? 1 : 2;
@@ -189,8 +195,8 @@ struct Builder {
         tree.nodes.emplace_back();
         tree.depth = std::max(tree.depth, depth + 1);
 
-        // Four sets, by splitting one after the other. Where few levels are left, into quarters: level d must not be given
-        // more than 4^(16 - d) lights.
+        // Four sets, by splitting one after the other. Where few levels are left, into quarters: level d must
+        // not be given more than 4^(16 - d) lights.
         const bool must_halve = uint32_t(std::bit_width(last - first - 1)) > 2 * (max_depth - depth - 1);
         std::vector<size_t> cuts = {first, last};
         std::vector<double> gains = {split_gain(first, last)};
@@ -210,10 +216,15 @@ struct Builder {
         for (size_t k = 0; k + 1 < cuts.size(); ++k) {
             const Subtree part = build(cuts[k], cuts[k + 1], depth + 1, trail | uint32_t(k) << (2 * depth));
             store(tree.nodes[index], int(k), part);
-            if (k == 0) whole = part;
+            if (k == 0)
+                whole = part;
             else
-                whole = {glm::min(whole.lo, part.lo), glm::max(whole.hi, part.hi), whole.intensity + part.intensity,
-                         unite(whole.cone, part.cone), std::max(whole.emission, part.emission), index};
+                whole = {glm::min(whole.lo, part.lo),
+                         glm::max(whole.hi, part.hi),
+                         whole.intensity + part.intensity,
+                         unite(whole.cone, part.cone),
+                         std::max(whole.emission, part.emission),
+                         index};
         }
         whole.child = index;
         return whole;
@@ -234,8 +245,10 @@ LightTree build_light_tree(std::span<const LightBounds> lights, uint32_t max_lis
     Builder builder;
     builder.tree.trails.resize(lights.size());
     for (uint32_t i = 0; i < lights.size(); ++i) {
-        if (is_at_infinity(lights[i])) ++builder.tree.infinite_count;
-        else items.push_back({lights[i], i, peak_intensity(lights[i])});
+        if (is_at_infinity(lights[i]))
+            ++builder.tree.infinite_count;
+        else
+            items.push_back({lights[i], i, peak_intensity(lights[i])});
     }
     builder.items = items;
     if (items.size() > max_listed) {

@@ -9,11 +9,11 @@ namespace etendue {
 
 // What kernels/measure_lights.comp finds out about a light. World space.
 struct LightBounds {
-    glm::vec3 lo{0};            // m; lo > hi for a light at infinity
-    float power = 0;            // lm
-    glm::vec3 hi{0};            // m
-    float cos_normals = -1;     // see LightCone in shaders/interfaces/light_source.glsl
-    glm::vec3 axis{0, 0, 1};    // unit
+    glm::vec3 lo{0};          // m; lo > hi for a light at infinity
+    float power = 0;          // lm
+    glm::vec3 hi{0};          // m
+    float cos_normals = -1;   // see LightCone in shaders/interfaces/light_source.glsl
+    glm::vec3 axis{0, 0, 1};  // unit
     float cos_emission = 0;
 };
 static_assert(sizeof(LightBounds) == 48);
@@ -37,13 +37,14 @@ struct LightTree {
 };
 
 // Up to this many finite lights are compared one by one rather than by a tree.
-constexpr uint32_t max_listed_lights = 8;
+constexpr uint32_t max_listed_lights = 16;
 
-// `lights` in the order of the buffer Lights: those at infinity first. The same input gives the same tree. At most 2^28
-// lights; at most 16 levels.
+// `lights` in the order of the buffer Lights: those at infinity first. The same input gives the same tree. At
+// most 2^28 lights; at most 16 levels.
 LightTree build_light_tree(std::span<const LightBounds> lights, uint32_t max_listed = max_listed_lights);
 
-// Greatest luminous intensity of a light, cd: its power over the solid angle integral of cos(max(0, angle - n)).
+// Greatest luminous intensity of a light, cd: its power over the solid angle integral of cos(max(0, angle -
+// n)).
 float peak_intensity(const LightBounds& light);
 
 }  // namespace etendue

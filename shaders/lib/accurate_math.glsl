@@ -1,5 +1,6 @@
-// Inverse trigonometric functions and sines good to a few units in the last place. A driver's own may be good to no more than
-// 1e-4 (lavapipe's acos, SwiftShader's sin). Polynomials of Moshier's Cephes library, single precision.
+// Inverse trigonometric functions and sines good to a few units in the last place. A driver's own may be good
+// to no more than 1e-4 (lavapipe's acos, SwiftShader's sin). Polynomials of Moshier's Cephes library, single
+// precision.
 
 #include "lib/constants.glsl"
 

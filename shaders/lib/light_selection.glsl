@@ -1,13 +1,15 @@
 // Which light a point asks: lights are chosen in proportion to an estimate of their illuminance there.
 //
-// Lights are numbered so that those at infinity come first. These share LIGHTS_AT_INFINITY / (LIGHTS_AT_INFINITY + 1) of the
-// choices equally; the rest goes to the finite ones. A few of them are compared one by one; more are found by a stochastic
-// descent of a tree whose nodes bound position, intensity and directions of four sets each (Conty Estévez & Kulla 2018,
-// "Importance Sampling of Many Lights with Adaptive Tree Splitting", where it is binary: with four, half as many choices are
-// made from coarse bounds for the same work). host/scene/light_tree.h builds it. The receiving normal is left out, so that
-// a ray that hits a light later can tell the probability from its origin alone.
+// Lights are numbered so that those at infinity come first. These share LIGHTS_AT_INFINITY /
+// (LIGHTS_AT_INFINITY + 1) of the choices equally; the rest goes to the finite ones. A few of them are
+// compared one by one; more are found by a stochastic descent of a tree whose nodes bound position, intensity
+// and directions of four sets each (Conty Estévez & Kulla 2018, "Importance Sampling of Many Lights with
+// Adaptive Tree Splitting", where it is binary: with four, half as many choices are made from coarse bounds
+// for the same work). host/scene/light_tree.h builds it. The receiving normal is left out, so that a ray that
+// hits a light later can tell the probability from its origin alone.
 //
-// The host defines LIGHT_COUNT, INFINITE_LIGHT_COUNT and HAS_LIGHT_TREE (0: the nodes are a list, to be read in order).
+// The host defines LIGHT_COUNT, INFINITE_LIGHT_COUNT and HAS_LIGHT_TREE (0: the nodes are a list, to be read
+// in order).
 
 #include "lib/constants.glsl"
 #include "lib/records.glsl"
@@ -45,13 +47,14 @@ layout(scalar, set = 0) readonly buffer LightTrails { uint light_trails[]; };
 vec4 lower_snorm(uvec4 v) { return max(vec4(ivec4(v << 16) >> 16) * (1.0 / 32767.0), -1.0); }
 vec4 upper_snorm(uvec4 v) { return max(vec4(ivec4(v) >> 16) * (1.0 / 32767.0), -1.0); }
 
-// Estimate of the illuminance that each set of lights causes at a point that faces it: intensity * cosine / d². With w the
-// angle between the axis and the direction to the point, n the spread of the normals and b the half angle under which
-// the set appears, no light of it leaves at less than w - n - b (equations 1 to 3 of the paper): the set counts as dark only
-// where that exceeds the angle of emission. The cosine itself is that of w - n, as if all lights stood in the centre, which halves
-// the variance beside the paper's bound, and a part of the bound where that is larger. Distances below half the radius are
-// taken as that: the set surrounds the point. (A quarter of the squared radius, not all of it, takes away two thirds of
-// the variance with ten thousand lights; for a single surface it is its largest illuminance, within 4 / pi.)
+// Estimate of the illuminance that each set of lights causes at a point that faces it: intensity * cosine /
+// d². With w the angle between the axis and the direction to the point, n the spread of the normals and b the
+// half angle under which the set appears, no light of it leaves at less than w - n - b (equations 1 to 3 of
+// the paper): the set counts as dark only where that exceeds the angle of emission. The cosine itself is that
+// of w - n, as if all lights stood in the centre, which halves the variance beside the paper's bound, and a
+// part of the bound where that is larger. Distances below half the radius are taken as that: the set
+// surrounds the point. (A quarter of the squared radius, not all of it, takes away two thirds of the variance
+// with ten thousand lights; for a single surface it is its largest illuminance, within 4 / pi.)
 vec4 node_importances(uint node, vec3 point, out uvec4 children) {
     LightNode n = light_nodes[node];
     children = n.children;
@@ -81,7 +84,8 @@ vec4 node_importances(uint node, vec3 point, out uvec4 children) {
     return mix(vec4(0), importance, greaterThan(cos_y, max(cos_e, 0.0)));
 }
 
-// One of four with probability in proportion to `w`, whose sum must be positive; u in [0,1) is stretched anew.
+// One of four with probability in proportion to `w`, whose sum must be positive; u in [0,1) is stretched
+// anew.
 uint choose_of_four(vec4 w, inout float u, out float weight) {
     float a = w.x, b = a + w.y, c = b + w.z;
     float x = u * (c + w.w);
@@ -95,20 +99,26 @@ float sum_of_four(vec4 w) { return w.x + w.y + w.z + w.w; }
 uint pick(uvec4 v, uint k) { return k == 0u ? v.x : k == 1u ? v.y : k == 2u ? v.z : v.w; }
 float pick(vec4 v, uint k) { return k == 0u ? v.x : k == 1u ? v.y : k == 2u ? v.z : v.w; }
 
-// Among the finite lights.
+// Among the finite lights. The lanes of a subgroup leave the loop together: values carried out of a loop that
+// lanes leave one by one come out wrong on SwiftShader and on Mesa 22.3.
 uint select_finite_light(vec3 point, inout float u, out float probability) {
     uvec4 children;
     float weight;
 #if HAS_LIGHT_TREE
     probability = 1.0;
     uint node = 0u;
+    bool done = false;
     do {
-        vec4 w = node_importances(node, point, children);
+        vec4 w = node_importances(done ? 0u : node, point, children);
         float sum = sum_of_four(w);
         bool dark = !(sum > 0.0);
-        node = pick(children, choose_of_four(dark ? vec4(1, 0, 0, 0) : w, u, weight));
-        probability = dark ? 0.0 : probability * (weight / sum);
-    } while (node < LIGHT_LEAF && probability > 0.0);
+        float v = u;
+        uint next = pick(children, choose_of_four(dark ? vec4(1, 0, 0, 0) : w, v, weight));
+        u = done ? u : v;
+        probability = done ? probability : dark ? 0.0 : probability * (weight / sum);
+        node = done ? node : next;
+        done = node >= LIGHT_LEAF || !(probability > 0.0);
+    } while (subgroupAny(!done));
     return probability > 0.0 ? node - LIGHT_LEAF : uint(INFINITE_LIGHT_COUNT);
 #else
     // One pass: each node takes the place of the one chosen so far with probability its sum / sum so far.
@@ -136,14 +146,16 @@ float finite_light_probability(uint light, vec3 point) {
 #if HAS_LIGHT_TREE
     float probability = 1.0;
     uint node = 0u;
+    bool done = false;
     do {
-        vec4 w = node_importances(node, point, children);
+        vec4 w = node_importances(done ? 0u : node, point, children);
         float sum = sum_of_four(w);
         uint k = trail & 3u;
         trail >>= 2;
-        node = pick(children, k);
-        probability = sum > 0.0 ? probability * (pick(w, k) / sum) : 0.0;
-    } while (node < LIGHT_LEAF && probability > 0.0);
+        probability = done ? probability : sum > 0.0 ? probability * (pick(w, k) / sum) : 0.0;
+        node = done ? node : pick(children, k);
+        done = node >= LIGHT_LEAF || !(probability > 0.0);
+    } while (subgroupAny(!done));
     return probability;
 #else
     float sum = 0.0, own = 0.0;
@@ -157,7 +169,8 @@ float finite_light_probability(uint light, vec3 point) {
 }
 #endif
 
-// A light for `point`; `u_remapped` is u stretched anew for further use. Probability 0: no light reaches the point.
+// A light for `point`; `u_remapped` is u stretched anew for further use. Probability 0: no light reaches the
+// point.
 uint select_light(vec3 point, float u, out float probability, out float u_remapped) {
     u_remapped = u;
     probability = 1.0;

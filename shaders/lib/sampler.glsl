@@ -1,9 +1,10 @@
-// Uniform numbers for the estimators: the first two dimensions of Sobol's sequence, Owen-scrambled, one pair after another
-// with a fresh shuffle and scramble for each ("padded"; Burley 2020, "Practical Hash-based Owen Scrambling").
+// Uniform numbers for the estimators: the first two dimensions of Sobol's sequence, Owen-scrambled, one pair
+// after another with a fresh shuffle and scramble for each ("padded"; Burley 2020, "Practical Hash-based Owen
+// Scrambling").
 //
-// Every pair of every pixel is a (0,2)-sequence over the sample index, so any 2^k consecutive samples that start at a
-// multiple of 2^k are stratified in all elementary intervals; pairs and pixels are independent of one another.
-// Numbers are multiples of 2^-24 in [0, 1).
+// Every pair of every pixel is a (0,2)-sequence over the sample index, so any 2^k consecutive samples that
+// start at a multiple of 2^k are stratified in all elementary intervals; pairs and pixels are independent of
+// one another. Numbers are multiples of 2^-24 in [0, 1).
 struct Sampler {
     uint index;       // of the sample in its pixel
     uint pixel_hash;  // of pixel and seed
@@ -23,8 +24,9 @@ uvec3 hash_3d(uvec3 v) {
     return v;
 }
 
-// Nested uniform scramble of a number whose bits stand in reverse order: every bit is flipped by a hash of the bits below
-// it. The form is that of Laine & Karras 2011; the constants are Vegdahl's (2021, "Building a Better LK Hash").
+// Nested uniform scramble of a number whose bits stand in reverse order: every bit is flipped by a hash of
+// the bits below it. The form is that of Laine & Karras 2011; the constants are Vegdahl's (2021, "Building a
+// Better LK Hash").
 uint scramble_reversed(uint x, uint seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
@@ -34,8 +36,9 @@ uint scramble_reversed(uint x, uint seed) {
     return x;
 }
 
-// Sobol's second dimension of `index`, bits in reverse order. Its matrix is Pascal's triangle modulo 2, where (i, j) is 1
-// when the bits of i are among those of j (Lucas 1878): a sum over supersets, done in log2(32) butterfly steps.
+// Sobol's second dimension of `index`, bits in reverse order. Its matrix is Pascal's triangle modulo 2, where
+// (i, j) is 1 when the bits of i are among those of j (Lucas 1878): a sum over supersets, done in log2(32)
+// butterfly steps.
 uint sobol_second_reversed(uint index) {
     index ^= (index >> 1) & 0x55555555u;
     index ^= (index >> 2) & 0x33333333u;

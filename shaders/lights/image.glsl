@@ -1,16 +1,19 @@
-// An image wrapped around the scene, infinitely far away, in latitude and longitude. The centre of the image looks along -z,
-// columns run to the right as seen from inside (at 3/4 of the width: +x), the top row is up (+y).
+// An image wrapped around the scene, infinitely far away, in latitude and longitude. The centre of the image
+// looks along -z, columns run to the right as seen from inside (at 3/4 of the width: +x), the top row is up
+// (+y).
 //
-// Texels hold the radiance at their centres. Between centres it is bilinear in azimuth and in the cosine of the polar angle;
-// it wraps around in azimuth and is constant between the outermost rows and the poles. Directions are sampled exactly
-// in proportion to luminance: a cell between four texel centres by alias tables (Walker 1977, Vose 1991), one for the
-// row and one for the column, then a point of the cell by inverting its bilinear luminance. With cells of equal solid angle per
-// unit of the two coordinates the pdf is luminance / (its integral over the sphere).
+// Texels hold the radiance at their centres. Between centres it is bilinear in azimuth and in the cosine of
+// the polar angle; it wraps around in azimuth and is constant between the outermost rows and the poles.
+// Directions are sampled exactly in proportion to luminance: a cell between four texel centres by alias
+// tables (Walker 1977, Vose 1991), one for the row and one for the column, then a point of the cell by
+// inverting its bilinear luminance. With cells of equal solid angle per unit of the two coordinates the pdf
+// is luminance / (its integral over the sphere).
 
 // An environment image on the device. Layout of environment_texels from `first`, with H = height, W = width:
-//   (H + 2) rows of W texels: the image with its first and last row repeated; rgb radiance; w: alias entry of the column of
-//       the cell whose upper left corner is this texel: alias in the lower `alias_bits`, threshold in the bits above
-//   H + 1 rows of cells: x threshold, y alias (a bit pattern), z 1 - |cos| at the cell's edge nearer the pole, w height in cos
+//   (H + 2) rows of W texels, the image with its first and last row repeated. rgb: radiance. w: alias entry of
+//       the column of the cell whose upper left corner is this texel, the alias in the lower `alias_bits`, the
+//       threshold in the bits above.
+//   H + 1 rows of cells. x: threshold. y: alias (bits). z: 1 - |cos| at the edge nearer the pole. w: height in cos.
 struct EnvironmentMapRef {
     uint first;
     uint width, height;
@@ -90,7 +93,8 @@ float sample_linear(float a, float b, float u) {
     return min(u * (a + b) / (a + sqrt(mix(a * a, b * b, u))), 1.0);
 }
 
-// The entry of an alias table with `count` entries, of which `own` decides: u in [0,1) is stretched anew over the result.
+// The entry of an alias table with `count` entries, of which `own` decides: u in [0,1) is stretched anew over
+// the result.
 uint choose_alias(uint entry, uint other, float threshold, inout float u) {
     bool own = u < threshold;
     u = min(own ? u / threshold : (u - threshold) / (1.0 - threshold), 1.0 - EPSILON);
@@ -100,7 +104,8 @@ uint choose_alias(uint entry, uint other, float threshold, inout float u) {
 LightSample image_sample_towards(ImageEnvironment r, vec3 point, vec2 u) {
     EnvironmentMapRef map = r.file;
     if (!(map.integral > 0.0)) return no_light_sample();
-    // Numbers have 24 bits, of which the choice of row and column takes half. New ones below them keep rare cells' share right.
+    // Numbers have 24 bits, of which the choice of row and column takes half. New ones below them keep rare
+    // cells' share right.
     uint bits = uint(u.x * 16777216.0) * 747796405u ^ uint(u.y * 16777216.0) * 2891336453u;
     bits = (bits ^ (bits >> 15)) * 277803737u;
     vec2 low = vec2((uvec2(bits, bits >> 8) ^ (bits >> 16)) & 0xFFu) * (1.0 / 256.0 / 16777216.0);

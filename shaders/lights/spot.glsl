@@ -1,6 +1,7 @@
-// A point that sends light into a cone around -z of its node (glTF KHR_lights_punctual). Between the inner and the outer
-// angle the intensity falls off as that specification recommends: the square of ((cos - cos outer) / (cos inner - cos outer)).
-// Of the node's transform only position and direction count: scale does not change the intensity.
+// A point that sends light into a cone around -z of its node (glTF KHR_lights_punctual). Between the inner
+// and the outer angle the intensity falls off as that specification recommends: the square of ((cos - cos
+// outer) / (cos inner - cos outer)). Of the node's transform only position and direction count: scale does
+// not change the intensity.
 struct SpotLight {
     Placement placement;
     SpectrumRef color;       //: 1 in [0, inf). Multiplies the intensity.

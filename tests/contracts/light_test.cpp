@@ -1,11 +1,13 @@
-// Every class of light, on the device: its sampler against its density and its radiance, its power against the light it
-// sends, and its illuminance against closed forms. Classes come from the registry; one without a configuration here fails.
+// Every class of light, on the device: its sampler against its density and its radiance, its power against
+// the light it sends, and its illuminance against closed forms. Classes come from the registry; one without a
+// configuration here fails.
 #include <cmath>
 #include <cstring>
 #include <functional>
 #include <numbers>
 #include <random>
 
+#include "host/error.h"
 #include "host/scene/environment_map.h"
 #include "host/scene/features.h"
 #include "host/scene/records.h"
@@ -34,8 +36,9 @@ ImageDescription probe_image(uint32_t width, uint32_t height) {
         if (x >= width / 4 && x < width / 2 && y > height / 2) v = 0;
         image.rgba32f.insert(image.rgba32f.end(), {v, v * uniform(random), v * 0.5f, 1});
     }
-    for (int c = 0; c < 3; ++c) image.rgba32f[((height / 4) * width + width - 1) * 4 + c] = 20;  // beside the seam
-    for (int c = 0; c < 3; ++c) image.rgba32f[(width / 2) * 4 + c] = 5;                          // beside the pole
+    for (int c = 0; c < 3; ++c)
+        image.rgba32f[((height / 4) * width + width - 1) * 4 + c] = 20;  // beside the seam
+    for (int c = 0; c < 3; ++c) image.rgba32f[(width / 2) * 4 + c] = 5;  // beside the pole
     return image;
 }
 
@@ -60,16 +63,22 @@ glm::dmat4 tilted_node() {
 std::vector<Configuration> configurations(const std::string& name) {
     if (name == "point") return {{"", {{"intensity", 7}, {"color", {1, 0.5, 0.25}}}, tilted_node(), {}, {}}};
     if (name == "spot")
-        return {{"wide", {{"intensity", 7}, {"inner_cone_angle", 0.4}, {"outer_cone_angle", 1.2}}, tilted_node(), {}, {}},
-                {"narrow", {{"inner_cone_angle", 0.0005}, {"outer_cone_angle", 0.001}}, tilted_node(), {}, {}},
-                {"sharp", {{"inner_cone_angle", 0.5}, {"outer_cone_angle", 0.5}}, tilted_node(), {}, {}}};
+        return {
+            {"wide",
+             {{"intensity", 7}, {"inner_cone_angle", 0.4}, {"outer_cone_angle", 1.2}},
+             tilted_node(),
+             {},
+             {}},
+            {"narrow", {{"inner_cone_angle", 0.0005}, {"outer_cone_angle", 0.001}}, tilted_node(), {}, {}},
+            {"sharp", {{"inner_cone_angle", 0.5}, {"outer_cone_angle", 0.5}}, tilted_node(), {}, {}}};
     if (name == "directional") return {{"", {{"intensity", 5}}, tilted_node(), {}, {}}};
     if (name == "constant") return {{"", {{"radiance", {1, 2, 3}}}, glm::dmat4(1.0), {}, {}}};
     if (name == "image")
-        return {{"16 x 8", {{"file", "f"}, {"scale", 2}}, glm::dmat4(1.0), probe_image(16, 8), {}},
-                {"7 x 5, turned", {{"file", "f"}, {"rotation", 1.234}}, glm::dmat4(1.0), probe_image(7, 5), {}},
-                {"64 x 32", {{"file", "f"}, {"rotation", -2}}, glm::dmat4(1.0), probe_image(64, 32), {}},
-                {"1 x 1", {{"file", "f"}}, glm::dmat4(1.0), probe_image(1, 1), {}}};
+        return {
+            {"16 x 8", {{"file", "f"}, {"scale", 2}}, glm::dmat4(1.0), probe_image(16, 8), {}},
+            {"7 x 5, turned", {{"file", "f"}, {"rotation", 1.234}}, glm::dmat4(1.0), probe_image(7, 5), {}},
+            {"64 x 32", {{"file", "f"}, {"rotation", -2}}, glm::dmat4(1.0), probe_image(64, 32), {}},
+            {"1 x 1", {{"file", "f"}}, glm::dmat4(1.0), probe_image(1, 1), {}}};
     return {};
 }
 
@@ -81,7 +90,8 @@ LightProbe make_probe(const std::string& name, const Configuration& c) {
 constexpr uint32_t rows = 32, columns = 64;
 
 glm::vec3 cell_direction(double row, double column) {
-    const double y = 1 - 2 * row / rows, phi = 2 * pi * column / columns, s = std::sqrt(std::max(0.0, 1 - y * y));
+    const double y = 1 - 2 * row / rows, phi = 2 * pi * column / columns,
+                 s = std::sqrt(std::max(0.0, 1 - y * y));
     return {float(s * std::sin(phi)), float(y), float(-s * std::cos(phi))};
 }
 uint32_t direction_cell(glm::vec3 d) {
@@ -125,7 +135,8 @@ TEST_CASE("light: directions are sampled with the stated density, and bring the 
                 }
                 observed[direction_cell(s.direction)] += 1;
                 worst_pdf = std::max(worst_pdf, std::abs(s.pdf_towards / double(s.pdf) - 1));
-                worst_radiance = std::max(worst_radiance, std::abs(luminance(s.radiance_towards) / luminance(s.radiance) - 1));
+                worst_radiance = std::max(
+                    worst_radiance, std::abs(luminance(s.radiance_towards) / luminance(s.radiance) - 1));
                 worst_length = std::max(worst_length, std::abs(glm::length(glm::dvec3(s.direction)) - 1));
             }
             CHECK(worst_pdf < 2e-3);
@@ -136,7 +147,8 @@ TEST_CASE("light: directions are sampled with the stated density, and bring the 
             std::vector<glm::vec3> directions;
             for (uint32_t i = 0; i < rows * columns; ++i)
                 for (uint32_t j = 0; j < fine * fine; ++j)
-                    directions.push_back(cell_direction(i / columns + (j / fine + 0.5) / fine, i % columns + (j % fine + 0.5) / fine));
+                    directions.push_back(cell_direction(i / columns + (j / fine + 0.5) / fine,
+                                                        i % columns + (j % fine + 0.5) / fine));
             const auto towards = probe.evaluate(c.point, directions);
             double total = 0;
             for (size_t i = 0; i < directions.size(); ++i) {
@@ -173,8 +185,8 @@ TEST_CASE("light: a spot light falls off as KHR_lights_punctual recommends, and 
     for (const Configuration& c : configurations("spot")) {
         CAPTURE(c.label);
         LightProbe probe = make_probe("spot", c);
-        const double intensity = c.parameters.value("intensity", 1.0), inner = c.parameters["inner_cone_angle"],
-                     outer = c.parameters["outer_cone_angle"];
+        const double intensity = c.parameters.value("intensity", 1.0),
+                     inner = c.parameters["inner_cone_angle"], outer = c.parameters["outer_cone_angle"];
         const glm::dvec3 axis(0.6, -0.8, 0), side(0.8, 0.6, 0), origin(1, 2, -3);
         const int steps = 2000;
         double flux = 0;
@@ -187,9 +199,12 @@ TEST_CASE("light: a spot light falls off as KHR_lights_punctual recommends, and 
         for (int i = 0; i < steps; ++i) {
             const glm::dvec3 d = glm::normalize(glm::dvec3(points[i]) - origin);
             const double angle = std::atan2(glm::length(glm::cross(axis, d)), glm::dot(axis, d));
-            const double t = std::clamp((std::cos(angle) - std::cos(outer)) / std::max(1e-12, std::cos(inner) - std::cos(outer)), 0.0, 1.0);
+            const double t = std::clamp(
+                (std::cos(angle) - std::cos(outer)) / std::max(1e-12, std::cos(inner) - std::cos(outer)), 0.0,
+                1.0);
             const double measured = samples[i].pdf > 0 ? samples[i].radiance.x * 4.0 : 0.0;
-            if (c.label == "wide") REQUIRE(measured == doctest::Approx(intensity * t * t).epsilon(1e-4).scale(intensity));
+            if (c.label == "wide")
+                REQUIRE(measured == doctest::Approx(intensity * t * t).epsilon(1e-4).scale(intensity));
             const double nominal = 1.25 * outer * (i + 0.5) / steps;
             flux += measured * 2 * pi * std::sin(nominal) * 1.25 * outer / steps;
         }
@@ -219,8 +234,8 @@ TEST_CASE("light: under a constant environment the illuminance is pi times the r
 
 namespace {
 
-// The image's radiance by its definition, in double precision: the azimuth runs from -z to +x, bilinear in it and in the
-// cosine of the polar angle, constant between the outermost row centres and the poles.
+// The image's radiance by its definition, in double precision: the azimuth runs from -z to +x, bilinear in it
+// and in the cosine of the polar angle, constant between the outermost row centres and the poles.
 glm::dvec3 image_reference(const ImageDescription& image, double rotation, const glm::dvec3& d) {
     const auto texel = [&](int x, int y) {
         x = (x % int(image.width) + int(image.width)) % int(image.width);
@@ -230,13 +245,16 @@ glm::dvec3 image_reference(const ImageDescription& image, double rotation, const
     };
     const double u = (std::atan2(d.x, 0.0 - d.z) + rotation) / (2 * pi) + 0.5;
     const double x = (u - std::floor(u)) * image.width - 0.5;
-    const auto row_cos = [&](int y) { return y < 0 ? 1.0 : y >= int(image.height) ? -1.0 : std::cos(pi * (y + 0.5) / image.height); };
+    const auto row_cos = [&](int y) {
+        return y < 0 ? 1.0 : y >= int(image.height) ? -1.0 : std::cos(pi * (y + 0.5) / image.height);
+    };
     int y = -1;
     while (y + 1 < int(image.height) && d.y <= row_cos(y + 1)) ++y;
     const double t = (row_cos(y) - d.y) / (row_cos(y) - row_cos(y + 1));
     const int left = int(std::floor(x));
     const double s = x - left;
-    return glm::mix(glm::mix(texel(left, y), texel(left + 1, y), s), glm::mix(texel(left, y + 1), texel(left + 1, y + 1), s), t);
+    return glm::mix(glm::mix(texel(left, y), texel(left + 1, y), s),
+                    glm::mix(texel(left, y + 1), texel(left + 1, y + 1), s), t);
 }
 
 }  // namespace
@@ -248,16 +266,20 @@ TEST_CASE("light: an environment image shows its definition's radiance in every 
         const double scale = c.parameters.value("scale", 1.0), rotation = c.parameters.value("rotation", 0.0);
         std::mt19937 random(2);
         std::normal_distribution<double> normal;
-        std::vector<glm::vec3> directions = {{0, 1, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}};
+        std::vector<glm::vec3> directions = {{0, 1, 0}, {0, -1, 0}, {0, 0, -1},
+                                             {0, 0, 1}, {1, 0, 0},  {-1, 0, 0}};
         for (double tiny : {1e-3, 1e-5, 1e-8})
-            for (double y : {1.0, -1.0}) directions.push_back(glm::vec3(glm::normalize(glm::dvec3(tiny, y, 0.5 * tiny))));
+            for (double y : {1.0, -1.0})
+                directions.push_back(glm::vec3(glm::normalize(glm::dvec3(tiny, y, 0.5 * tiny))));
         while (directions.size() < 50000)
-            directions.push_back(glm::vec3(glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)))));
+            directions.push_back(
+                glm::vec3(glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)))));
         const auto values = probe.evaluate({}, directions);
         double worst = 0;
         glm::vec3 where(0);
         for (size_t i = 0; i < directions.size(); ++i) {
-            const glm::dvec3 reference = scale * image_reference(c.image, rotation, glm::normalize(glm::dvec3(directions[i])));
+            const glm::dvec3 reference =
+                scale * image_reference(c.image, rotation, glm::normalize(glm::dvec3(directions[i])));
             const double error = glm::length(glm::dvec3(values[i].radiance) - reference) / (scale * 20);
             if (error > worst) worst = error, where = directions[i];
         }
@@ -275,7 +297,8 @@ TEST_CASE("light: the centre of an environment image lies along -z, its right to
         image.width = 64, image.height = 32;
         image.rgba32f.assign(64 * 32 * 4, 0.0f);
         for (int c = 0; c < 3; ++c) image.rgba32f[(row * 64 + column) * 4 + c] = 1;
-        LightProbe probe = make_probe("image", {"", {{"file", "f"}, {"rotation", rotation}}, glm::dmat4(1.0), image, {}});
+        LightProbe probe =
+            make_probe("image", {"", {{"file", "f"}, {"rotation", rotation}}, glm::dmat4(1.0), image, {}});
         glm::vec3 mean(0);
         for (const ProbeSample& s : probe.sample({}, 4096, 1)) mean += s.direction;
         return glm::normalize(mean);
@@ -308,8 +331,11 @@ TEST_CASE("light: illuminance and power of an environment image are those of qua
             }
         Moments e;
         for (const ProbeSample& s : probe.sample({}, 1 << 20, 3))
-            if (s.pdf > 0) e.add(luminance(s.radiance) * std::max(0.0, glm::dot(glm::dvec3(s.direction), normal)) / s.pdf);
-            else e.add(0);
+            if (s.pdf > 0)
+                e.add(luminance(s.radiance) * std::max(0.0, glm::dot(glm::dvec3(s.direction), normal)) /
+                      s.pdf);
+            else
+                e.add(0);
         CHECK(z_test(e.mean, illuminance, e.standard_error(), 1e-4 * illuminance) > false_alarm);
         CHECK(probe.measure(2.0f).power == doctest::Approx(pi * 4 * integral).epsilon(1e-4));
     }
@@ -331,6 +357,32 @@ TEST_CASE("light: a sun ten million times brighter than the sky leaves the sky's
     MESSAGE(below, " of ", count, " samples go to the sky below the horizon");
     const double expected = 2 * pi / integral * count;
     CHECK(z_test(below, expected, std::sqrt(expected), 1e-3 * expected) > false_alarm);
+}
+
+TEST_CASE("light: texels that are no radiance are named by column and row") {
+    for (float bad :
+         {-1.0f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        ImageDescription image = probe_image(8, 4);
+        image.rgba32f[(2 * 8 + 5) * 4 + 1] = bad;
+        CHECK_THROWS_WITH_AS(
+            build_environment_map(image),
+            fmt::format(
+                "probe: the texel in column 5, row 2 of this environment image is {}; radiance is a finite "
+                "number, at least 0",
+                bad)
+                .c_str(),
+            Error);
+    }
+    CHECK_THROWS_AS(build_environment_map(ImageDescription{}), Error);
+}
+
+TEST_CASE("light: 8-bit environment images are taken as sRGB") {
+    ImageDescription image;
+    image.name = "grey";
+    image.width = image.height = 2;
+    image.rgba8.assign(16, 188);  // 0.5029 in linear light
+    LightProbe probe = make_probe("image", {"", {{"file", "f"}}, glm::dmat4(1.0), image, {}});
+    CHECK(probe.evaluate({}, {{0.6f, 0, 0.8f}})[0].radiance.y == doctest::Approx(0.5029).epsilon(1e-3));
 }
 
 TEST_CASE("light: a black environment image sends nothing") {

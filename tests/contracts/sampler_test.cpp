@@ -15,8 +15,8 @@ struct Pair {
 };
 
 // pairs[(pixel * samples + sample) * dimensions + dimension]; pixels lie in a row of 256 each.
-std::vector<Pair> draw_pairs(uint32_t pixels, uint32_t samples, uint32_t dimensions, uint32_t first_sample = 0,
-                             uint32_t seed = 0) {
+std::vector<Pair> draw_pairs(uint32_t pixels, uint32_t samples, uint32_t dimensions,
+                             uint32_t first_sample = 0, uint32_t seed = 0) {
     Buffer out(test_device(), uint64_t(pixels) * samples * dimensions * sizeof(Pair), "pairs");
     const Kernel kernel = make_test_kernel("draw_pairs", R"(
         #include "lib/sampler.glsl"
@@ -30,11 +30,15 @@ std::vector<Pair> draw_pairs(uint32_t pixels, uint32_t samples, uint32_t dimensi
             Sampler s = start_sampler(uvec2(pixel & 255u, pixel >> 8), first_sample + i % sample_count, seed);
             for (uint d = 0u; d < dimension_count; d++) pairs[i * dimension_count + d] = sample_2d(s);
         }
-    )", {{"Pairs", &out}});
+    )",
+                                           {{"Pairs", &out}});
     CommandList list(test_device());
     list.dispatch(kernel, (pixels * samples + 63) / 64,
-                  {{"pixel_count", pixels}, {"sample_count", samples}, {"dimension_count", dimensions},
-                   {"first_sample", first_sample}, {"seed", seed}});
+                  {{"pixel_count", pixels},
+                   {"sample_count", samples},
+                   {"dimension_count", dimensions},
+                   {"first_sample", first_sample},
+                   {"seed", seed}});
     list.run();
     return out.read_array<Pair>(uint64_t(pixels) * samples * dimensions);
 }
@@ -78,7 +82,8 @@ TEST_CASE("sampler: every aligned power of two of a pair's samples is a (0,2)-ne
         for (uint32_t d = 0; d < dimensions; ++d)
             for (uint32_t log_count = 0; log_count <= 10; ++log_count)
                 for (uint32_t first = 0; first < samples; first += 1u << log_count)
-                    REQUIRE(is_net(&pairs[(pixel * samples + first) * dimensions + d], dimensions, log_count));
+                    REQUIRE(
+                        is_net(&pairs[(pixel * samples + first) * dimensions + d], dimensions, log_count));
 }
 
 TEST_CASE("sampler: late samples are stratified like early ones") {
@@ -123,12 +128,15 @@ TEST_CASE("sampler: over pixels, the numbers of a sample are uniform and indepen
 }
 
 TEST_CASE("sampler: over a pixel's samples, pairs are independent of one another and of the next pixel's") {
-    // A block of 16 samples puts one point in each row and column of a 16 x 16 table. With independent scrambles each cell's
-    // count over the 64 blocks has variance 64 (1/16) (15/16), so Pearson's statistic has the mean 256 * 3.75 / 4 = 240.
-    // (Its variance is larger than chi-squared's: the cells that a block can take together depend on one another.)
+    // A block of 16 samples puts one point in each row and column of a 16 x 16 table. With independent
+    // scrambles each cell's count over the 64 blocks has variance 64 (1/16) (15/16), so Pearson's statistic
+    // has the mean 256 * 3.75 / 4 = 240. (Its variance is larger than chi-squared's: the cells that a block
+    // can take together depend on one another.)
     const uint32_t pixels = 64, samples = 1024, dimensions = 6;
     const auto pairs = draw_pairs(pixels, samples, dimensions, 0, 3);
-    const auto at = [&](uint32_t pixel, uint32_t sample, uint32_t d) { return pairs[(pixel * samples + sample) * dimensions + d]; };
+    const auto at = [&](uint32_t pixel, uint32_t sample, uint32_t d) {
+        return pairs[(pixel * samples + sample) * dimensions + d];
+    };
     Moments xx_moments, xy_moments, pixel_moments;
     for (uint32_t pixel = 0; pixel < pixels; ++pixel)
         for (uint32_t d = 0; d + 1 < dimensions; ++d) {
@@ -138,7 +146,8 @@ TEST_CASE("sampler: over a pixel's samples, pairs are independent of one another
                 xy.add(at(pixel, i, d).x, at(pixel, i, d + 1).y);
                 pixel_to_pixel.add(at(pixel, i, d).x, at((pixel + 1) % pixels, i, d).x);
             }
-            xx_moments.add(xx.statistic()), xy_moments.add(xy.statistic()), pixel_moments.add(pixel_to_pixel.statistic());
+            xx_moments.add(xx.statistic()), xy_moments.add(xy.statistic()),
+                pixel_moments.add(pixel_to_pixel.statistic());
         }
     for (const Moments& m : {xx_moments, xy_moments, pixel_moments}) {
         CAPTURE(m.mean);
@@ -150,7 +159,8 @@ TEST_CASE("sampler: a smooth integrand converges faster than with random numbers
     // f = exp(x + y) on one pair, and a product over two pairs. Random numbers would give sqrt(variance / n).
     const uint32_t pixels = 256;
     const double e1 = std::exp(1.0) - 1, e2 = (std::exp(2.0) - 1) / 2;
-    const double variance_pair = e2 * e2 - e1 * e1 * e1 * e1, variance_two = std::pow(e2, 4) - std::pow(e1, 8);
+    const double variance_pair = e2 * e2 - e1 * e1 * e1 * e1,
+                 variance_two = std::pow(e2, 4) - std::pow(e1, 8);
     for (uint32_t samples : {64u, 1024u}) {
         const auto pairs = draw_pairs(pixels, samples, 2);
         double pair_error = 0, two_error = 0;
@@ -166,7 +176,8 @@ TEST_CASE("sampler: a smooth integrand converges faster than with random numbers
         }
         const double pair_gain = std::sqrt(variance_pair / samples / pair_error);
         const double two_gain = std::sqrt(variance_two / samples / two_error);
-        MESSAGE(samples, " samples: error ", pair_gain, " times smaller than random on one pair, ", two_gain, " on two");
+        MESSAGE(samples, " samples: error ", pair_gain, " times smaller than random on one pair, ", two_gain,
+                " on two");
         CHECK(pair_gain > (samples == 64 ? 10 : 100));
         CHECK(two_gain > 1.5);
     }

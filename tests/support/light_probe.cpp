@@ -52,8 +52,8 @@ ShaderSources test_sources() {
     return sources;
 }
 
-LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& parameters, const glm::dmat4& placement,
-                       const ImageDescription& image) {
+LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& parameters,
+                       const glm::dmat4& placement, const ImageDescription& image) {
     ClassRegistry registry(test_sources());
     const ClassInfo* info = registry.find(Interface::light, class_name);
     REQUIRE(info);
@@ -62,7 +62,8 @@ LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& para
     const RecordResolver resolver{scene, {}, {}, [&](const std::filesystem::path&, const std::string&) {
                                       EnvironmentMap map = build_environment_map(image);
                                       texels = map.texels;
-                                      texels.insert(texels.begin(), glm::uvec4(0));  // `first` is not always 0
+                                      texels.insert(texels.begin(),
+                                                    glm::uvec4(0));  // `first` is not always 0
                                       map.ref.first = 1;
                                       return map.ref;
                                   }};
@@ -73,7 +74,8 @@ LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& para
     texels_ = create_buffer(test_device(), texels, "environment texels");
     lights_ = create_buffer(test_device(), std::vector<uint32_t>{records.ref(*info, 0)}, "lights");
     sources_ = test_sources();
-    sources_.generated["generated/light_classes.glsl"] = class_header(interface_info(Interface::light), {info});
+    sources_.generated["generated/light_classes.glsl"] =
+        class_header(interface_info(Interface::light), {info});
     Features features;
     features.light_count = 1;
     defines_ = features.defines();
@@ -90,7 +92,8 @@ Kernel LightProbe::kernel(const std::string& name, const std::string& text, Buff
     return Kernel(test_device(), compile_shader(sources, name, options), buffers);
 }
 
-static std::vector<ProbeSample> run_samples(const Kernel& kernel, Buffer& out, uint32_t count, uint32_t points, uint32_t seed) {
+static std::vector<ProbeSample> run_samples(const Kernel& kernel, Buffer& out, uint32_t count,
+                                            uint32_t points, uint32_t seed) {
     CommandList list(test_device());
     list.dispatch(kernel, (count + 63) / 64, {{"count", count}, {"point_count", points}, {"seed", seed}});
     list.run();
@@ -100,14 +103,16 @@ static std::vector<ProbeSample> run_samples(const Kernel& kernel, Buffer& out, u
 std::vector<ProbeSample> LightProbe::sample(glm::vec3 point, uint32_t count, uint32_t seed) {
     Buffer points = create_buffer(test_device(), std::vector<glm::vec3>{point}, "points");
     Buffer out(test_device(), uint64_t(count) * sizeof(ProbeSample), "results");
-    return run_samples(kernel("sample_light", sample_kernel, {{"Points", &points}, {"Results", &out}}), out, count, 1, seed);
+    return run_samples(kernel("sample_light", sample_kernel, {{"Points", &points}, {"Results", &out}}), out,
+                       count, 1, seed);
 }
 
 std::vector<ProbeSample> LightProbe::sample_at(const std::vector<glm::vec3>& at) {
     const uint32_t count = uint32_t(at.size());
     Buffer points = create_buffer(test_device(), at, "points");
     Buffer out(test_device(), uint64_t(count) * sizeof(ProbeSample), "results");
-    return run_samples(kernel("sample_light", sample_kernel, {{"Points", &points}, {"Results", &out}}), out, count, count, 0);
+    return run_samples(kernel("sample_light", sample_kernel, {{"Points", &points}, {"Results", &out}}), out,
+                       count, count, 0);
 }
 
 std::vector<ProbeValue> LightProbe::evaluate(glm::vec3 point, const std::vector<glm::vec3>& directions) {
@@ -115,7 +120,8 @@ std::vector<ProbeValue> LightProbe::evaluate(glm::vec3 point, const std::vector<
     Buffer points = create_buffer(test_device(), std::vector<glm::vec3>{point}, "points");
     Buffer along = create_buffer(test_device(), directions, "directions");
     Buffer out(test_device(), uint64_t(count) * sizeof(ProbeValue), "results");
-    const Kernel evaluate = kernel("evaluate_light", evaluate_kernel, {{"Points", &points}, {"Directions", &along}, {"Results", &out}});
+    const Kernel evaluate = kernel("evaluate_light", evaluate_kernel,
+                                   {{"Points", &points}, {"Directions", &along}, {"Results", &out}});
     CommandList list(test_device());
     list.dispatch(evaluate, (count + 63) / 64, {{"count", count}});
     list.run();
@@ -126,7 +132,12 @@ LightBounds LightProbe::measure(float scene_radius) {
     Buffer out(test_device(), sizeof(LightBounds), "light bounds");
     const Kernel measure = kernel("kernels/measure_lights.comp", "", {{"LightBoundsTable", &out}});
     CommandList list(test_device());
-    list.dispatch(measure, 1, {{"light_count", 1u}, {"scene_x", 0.0f}, {"scene_y", 0.0f}, {"scene_z", 0.0f}, {"scene_radius", scene_radius}});
+    list.dispatch(measure, 1,
+                  {{"light_count", 1u},
+                   {"scene_x", 0.0f},
+                   {"scene_y", 0.0f},
+                   {"scene_z", 0.0f},
+                   {"scene_radius", scene_radius}});
     list.run();
     return out.read_array<LightBounds>(1)[0];
 }

@@ -1,4 +1,5 @@
-// One light of a registered class on the device, asked through the interface of shaders/interfaces/light_source.glsl.
+// One light of a registered class on the device, asked through the interface of
+// shaders/interfaces/light_source.glsl.
 #pragma once
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
