@@ -116,13 +116,14 @@ def spheres():
 
 
 def lamps():
-    s = Gltf("lamps", "Three lamps of 45 cd, 3 m above a floor of reflectance 0.5, and a spot that grazes the back wall. Below the left one, a "
+    s = Gltf("lamps", "Three bays with lamps of 45 cd, 3 m above a floor of reflectance 0.5, and two spots on the back wall. Below the left one, a "
              "spot, the floor gets 45 / 3² = 5 lx and has the luminance 5 x 0.5 / pi = 0.80 (a little more with the light that "
              "the room returns). The middle one shines through a thin pane, which lets 2n / (n² + 1) = 0.923 of it "
              "pass: 0.73. The right one is a square of 0.4 m and luminance 281.25, 45 cd straight down: 0.79, falling off "
              "with the fourth power of the cosine, and with soft shadows where the spots' are sharp.")
     floor = s.surface("floor", "lambertian", reflectance=0.5)
     wall = s.surface("wall", "lambertian", reflectance=[0.42, 0.40, 0.37])
+    dark = s.surface("partition", "lambertian", reflectance=0.06)
     ball = s.surface("ball", "lambertian", reflectance=[0.68, 0.30, 0.10])
     block = s.surface("block", "lambertian", reflectance=[0.16, 0.34, 0.46])
     pane = s.surface("pane", "thin_dielectric", ior=1.5)
@@ -130,15 +131,16 @@ def lamps():
     lamp = s.emitter("square lamp", 281.25)
     s.quad("floor", floor, [[-6, 0, 5], [6, 0, 5], [6, 0, -2], [-6, 0, -2]])
     s.quad("back", wall, [[-6, 0, -2], [6, 0, -2], [6, 4, -2], [-6, 4, -2]])
+    for x in (-1.3, 1.3):
+        s.box("partition", dark, [0.06, 3.2, 3.4], translation=[x, 0, -0.3])
     down = [0, -1, 0]
     cones = {"spot": {"innerConeAngle": 0.32, "outerConeAngle": 0.42}}
     for x in (-2.6, 0):
         s.light("spot", "spot", 45, look_along([x, 3, 0], down, (0, 0, -1)), **cones)
     s.shape("square lamp", "rectangle", lamp, matrix=facing([2.6, 3, 0], down, (0, 0, -1)), size=[0.4, 0.4])
-    s.light("wall washer", "spot", 14, look_along([-1.3, 3.3, -1.5], [0, -1, -0.35]), (1, 0.72, 0.40),
-            spot={"innerConeAngle": 0.1, "outerConeAngle": 0.9})
-    s.light("wall washer", "spot", 14, look_along([1.3, 3.3, -1.5], [0, -1, -0.35]), (1, 0.72, 0.40),
-            spot={"innerConeAngle": 0.1, "outerConeAngle": 0.9})
+    for x in (-2.6, 0):
+        s.light("wall washer", "spot", 10, look_along([x, 3.4, -1.55], [0, -1, -0.3]), (1, 0.72, 0.40),
+                spot={"innerConeAngle": 0.1, "outerConeAngle": 0.7})
     s.shape("pane", "rectangle", pane, matrix=facing([0, 1.3, 0], [0, 1, 0], (0, 0, -1)), size=[1.7, 1.7])
     sideways = facing([0, 0, 0], [1, 0, 0])
     for z in (-0.85, 0.85):
@@ -167,14 +169,14 @@ def materials():
             material = s.principled(f"{name}, roughness {roughness:.1f}", color, metallic, roughness, transmission,
                                     1.5 if transmission else None)
             s.shape(f"{name} {i}", "sphere", material, [1.08 * (i - (columns - 1) / 2), 0.46, 1.7 - 1.5 * row], radius=0.46)
-    s.camera([0, 6.2, 9.0], [0, 0.28, 0.15], 21.5, 1.6)
+    s.camera([0, 6.2, 9.0], [0, 0.28, 0.15], 25, 1.6)
     return s
 
 
 def many_lights():
     s = Gltf("many_lights", "")
-    floor = s.surface("floor", "lambertian", reflectance=[0.50, 0.48, 0.46])
-    wall = s.surface("wall", "lambertian", reflectance=[0.62, 0.60, 0.58])
+    floor = s.surface("floor", "lambertian", reflectance=[0.62, 0.60, 0.57])
+    wall = s.surface("wall", "lambertian", reflectance=[0.70, 0.68, 0.66])
     metal = s.surface("pillar", "conductor", alpha=0.25, **COPPER)
     s.quad("floor", floor, [[-6, 0, 8], [6, 0, 8], [6, 0, -12], [-6, 0, -12]])
     s.quad("back", wall, [[-6, 0, -12], [6, 0, -12], [6, 5, -12], [-6, 5, -12]])
@@ -185,7 +187,7 @@ def many_lights():
     for z in (-8.5, -4.5, -0.5, 3.5):
         for x in (-3.6, 3.6):
             s.shape("pillar", "cylinder", metal, matrix=upright[:12] + [x, 2.5, z, 1], radius=0.3, height=5)
-    r, luminance = 0.08, 2.5
+    r, luminance = 0.08, 4.0
     colors = (("amber", (1, 0.50, 0.12)), ("rose", (1, 0.22, 0.26)), ("white", (1, 0.84, 0.62)),
               ("teal", (0.10, 0.72, 0.60)), ("blue", (0.20, 0.36, 1)))
     places = [[] for _ in colors]
