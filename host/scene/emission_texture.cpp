@@ -7,7 +7,7 @@
 namespace etendue {
 namespace {
 
-constexpr int max_texels = 1 << 16;  // looked at for one triangle; larger ones count as lights and are sampled
+constexpr int max_texels = 1 << 16;  // looked at for one triangle
 
 const std::array<float, 256>& srgb_table() {
     static const std::array<float, 256> table = [] {
@@ -53,35 +53,20 @@ float EmissionTexture::texel(int x, int y) const {
     return luminance_[size_t(wrap_texel(y, height_, use_.wrap_v)) * width_ + wrap_texel(x, width_, use_.wrap_u)];
 }
 
-float EmissionTexture::mean_luminance(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const {
-    // Corners in texels, where texel (x, y) has its centre at (x + 0.5, y + 0.5).
-    glm::dvec2 corner[3], lo(1e30), hi(-1e30);
+bool EmissionTexture::is_dark(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const {
+    // Box around the triangle in texels, where texel (x, y) has its centre at (x + 0.5, y + 0.5).
+    glm::dvec2 lo(1e30), hi(-1e30);
     for (int i = 0; i < 3; ++i) {
         const glm::vec2 uv = use_.uv_set == 0 ? uv0[i] : uv1[i];
-        corner[i] = glm::dvec2(glm::dot(glm::vec2(use_.uv_matrix.x, use_.uv_matrix.y), uv) + use_.uv_offset.x,
-                               glm::dot(glm::vec2(use_.uv_matrix.z, use_.uv_matrix.w), uv) + use_.uv_offset.y) *
-                    glm::dvec2(width_, height_);
-        lo = glm::min(lo, corner[i]), hi = glm::max(hi, corner[i]);
+        const glm::dvec2 corner(glm::dot(glm::vec2(use_.uv_matrix.x, use_.uv_matrix.y), uv) + use_.uv_offset.x,
+                                glm::dot(glm::vec2(use_.uv_matrix.z, use_.uv_matrix.w), uv) + use_.uv_offset.y);
+        lo = glm::min(lo, corner * glm::dvec2(width_, height_)), hi = glm::max(hi, corner * glm::dvec2(width_, height_));
     }
-    if (!((hi.x - lo.x + 4) * (hi.y - lo.y + 4) < max_texels) || !(glm::length(lo) < 1e6)) {
-        float sum = 0;
-        for (int i = 0; i < width_ * height_; i += std::max(1, width_ * height_ / 4096)) sum += luminance_[i];
-        return std::max(sum, 1e-6f) / 4096.0f;
-    }
-    const auto side = [](glm::dvec2 a, glm::dvec2 b, glm::dvec2 p) { return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x); };
-    double inside = 0, around = 0;
-    int inside_count = 0, around_count = 0;
+    if (!((hi.x - lo.x + 4) * (hi.y - lo.y + 4) < max_texels) || !(glm::length(lo) < 1e6)) return false;
     for (int y = int(std::floor(lo.y - 1)); y <= int(std::ceil(hi.y)); ++y)
-        for (int x = int(std::floor(lo.x - 1)); x <= int(std::ceil(hi.x)); ++x) {
-            const double value = texel(x, y);
-            const glm::dvec2 p(x + 0.5, y + 0.5);
-            const double a = side(corner[0], corner[1], p), b = side(corner[1], corner[2], p), c = side(corner[2], corner[0], p);
-            around += value, ++around_count;
-            if ((a >= 0 && b >= 0 && c >= 0) || (a <= 0 && b <= 0 && c <= 0)) inside += value, ++inside_count;
-        }
-    const double mean_around = around / std::max(around_count, 1);
-    // Filtering reaches beyond the triangle: what is near counts a little even where no texel centre inside is bright.
-    return float(inside_count ? std::max(inside / inside_count, 0.01 * mean_around) : mean_around);
+        for (int x = int(std::floor(lo.x - 1)); x <= int(std::ceil(hi.x)); ++x)
+            if (texel(x, y) > 0) return false;
+    return true;
 }
 
 }  // namespace etendue

@@ -14,9 +14,9 @@ class EmissionTexture {
   public:
     EmissionTexture(const ImageDescription& image, const TextureUse& use);
 
-    // Mean luminance over a triangle given by its texture coordinates; 0 only where every texel that filtering can reach
-    // from the triangle is black.
-    float mean_luminance(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const;
+    // Whether every texel that filtering can reach from a triangle, given by its texture coordinates, is black. Triangles that
+    // cover more than 65536 texels count as not dark.
+    bool is_dark(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const;
 
   private:
     float texel(int x, int y) const;  // any x and y: wrapped as the texture says

@@ -88,7 +88,6 @@ class SceneCompiler {
     std::vector<uint32_t> lights_;           // RecordRefs
     uint32_t first_area_light_ = 0;          // in lights_, before they are sorted
     std::vector<uint32_t> area_primitives_;  // of each area light
-    std::vector<float> area_brightness_;     // of each area light: its part of the texture over the whole
 };
 
 }  // namespace etendue

@@ -56,29 +56,20 @@ void SceneCompiler::add_lights() {
     out_.features.light_count = uint32_t(lights_.size());
 }
 
-// Triangles that an emissive texture leaves dark are no lights; the others are as bright as their part of the texture.
+// Triangles that an emissive texture leaves dark are no lights.
 void SceneCompiler::drop_dark_triangles(std::vector<uint32_t>& primitives) {
     std::map<uint32_t, EmissionTexture> textures;  // by index of the Texture
-    std::vector<uint32_t> kept;
-    for (uint32_t i : primitives) {
+    std::erase_if(primitives, [&](uint32_t i) {
         const PrimitiveRecord& p = world_.primitives[i];
-        const MaterialRecord& m = materials_[p.material];
-        float brightness = 1;
-        if (m.emission_texture != no_record && primitive_kind(p) == PrimitiveKind::triangle && !world_.triangle_indices.empty()) {
-            const TextureUse& use = textures_[m.emission_texture];
-            const auto& texture = textures.try_emplace(m.emission_texture, in_.images[use.image], use).first->second;
-            const glm::uvec3 t = world_.triangle_indices[p.attributes & 0x3FFFFFFFu];
-            const VertexRecord &a = world_.vertices[t.x], &b = world_.vertices[t.y], &c = world_.vertices[t.z];
-            const glm::vec2 uv0[3] = {a.uv0, b.uv0, c.uv0}, uv1[3] = {a.uv1, b.uv1, c.uv1};
-            const auto y = [](glm::vec4 v) { return glm::dot(glm::vec3(v), glm::vec3(0.2126f, 0.7152f, 0.0722f)); };
-            const float mean = y(m.mean_emission) / y(m.emission);  // of the whole texture
-            brightness = mean > 0 ? texture.mean_luminance(uv0, uv1) / mean : 0.0f;
-        }
-        if (brightness <= 0) continue;
-        kept.push_back(i);
-        area_brightness_.push_back(brightness);
-    }
-    primitives = std::move(kept);
+        const uint32_t index = materials_[p.material].emission_texture;
+        if (index == no_record || primitive_kind(p) != PrimitiveKind::triangle || world_.triangle_indices.empty()) return false;
+        const TextureUse& use = textures_[index];
+        const EmissionTexture& texture = textures.try_emplace(index, in_.images[use.image], use).first->second;
+        const glm::uvec3 t = world_.triangle_indices[p.attributes & 0x3FFFFFFFu];
+        const VertexRecord &a = world_.vertices[t.x], &b = world_.vertices[t.y], &c = world_.vertices[t.z];
+        const glm::vec2 uv0[3] = {a.uv0, b.uv0, c.uv0}, uv1[3] = {a.uv1, b.uv1, c.uv1};
+        return texture.is_dark(uv0, uv1);
+    });
 }
 
 // Power and extent of every light, found out by the classes on the device; then the order of the list, the tree, and the scale of
@@ -124,9 +115,7 @@ std::vector<LightBounds> SceneCompiler::run_measurement() {
     const uint32_t count = uint32_t(lights_.size());
     run_once("kernels/measure_lights.comp", count, {{"LightBoundsTable", &out}},
              {{"light_count", count}, {"scene_radius", out_.radius}});
-    auto bounds = out.read_array<LightBounds>(count);
-    for (size_t i = 0; i < area_brightness_.size(); ++i) bounds[first_area_light_ + i].power *= area_brightness_[i];
-    return bounds;
+    return out.read_array<LightBounds>(count);
 }
 
 void SceneCompiler::scale_powers(std::vector<LightBounds>& bounds) {

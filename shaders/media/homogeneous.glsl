@@ -1,6 +1,6 @@
 // A medium that is the same everywhere: refractive index and absorption (Beer-Lambert).
 struct Homogeneous {
-    float ior;               //: 1 in [0.1, 10]. Real refractive index.
+    float ior;               //: 1 in [0.1, 100]. Real refractive index.
     SpectrumRef absorption;  //: 0 in [0, inf) 1/m. Absorption coefficient.
 };
 
