@@ -74,8 +74,8 @@ TEST_CASE("a render writes an image with its attributes, layers and statistics")
         CHECK(kernel.contains("rays_per_second"));
     }
     // The balance adds up. Half of what meets the ball is absorbed, once or more often.
-    const auto& balance = stats.at("importance_balance");
-    double parts = balance["absorbed"].get<double>() + balance["escaped"].get<double>();
+    const auto& balance = stats.at("power_balance");
+    double parts = balance["absorbed"].get<double>() + balance["received"].get<double>();
     for (const auto& [cause, part] : balance["lost"].items()) parts += part.get<double>();
     CHECK(parts == doctest::Approx(balance["emitted"].get<double>()));
     CHECK(balance["absorbed"].get<double>() > 0.05);
