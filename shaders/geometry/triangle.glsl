@@ -91,9 +91,23 @@ vec3 triangle_normal(Triangle r) {
     return l > 0.0 ? n / l : vec3(0, 0, 1);
 }
 
+// Barycentrics of a point kept off the edges by more than rounding. Nearer to an edge it could come to lie behind the
+// neighbour that shares it, or so close to the neighbour's plane that a ray towards it counts as starting on it: light would
+// leave a closed mesh there. Moves the point by less than the size of the triangle times 1e-5.
+vec3 inner_barycentrics(Triangle r, vec2 uv) {
+    vec3 e1 = r.v1 - r.v0, e2 = r.v2 - r.v0, e3 = r.v2 - r.v1;
+    vec3 sizes = vec3(length(e1), length(e2), length(e3)), far = max(max(abs(r.v0), abs(r.v1)), abs(r.v2));
+    float longest = max(max(sizes.x, sizes.y), sizes.z);
+    float margin = 32.0 * EPSILON * longest + 16.0 * EPSILON * max(max(far.x, far.y), far.z);
+    float lowest_height = length(cross(e1 / longest, e2 / longest)) * longest;
+    float least = min(margin / max(lowest_height, 1e-30), 0.25);
+    vec3 b = max(vec3(1.0 - uv.x - uv.y, uv), vec3(least));
+    return b / (b.x + b.y + b.z);
+}
+
 LocalPoint triangle_locate(Triangle r, vec3 origin, vec3 direction, GeometryHit hit) {
-    float b0 = 1.0 - hit.uv.x - hit.uv.y;
-    vec3 p0 = b0 * r.v0, p1 = hit.uv.x * r.v1, p2 = hit.uv.y * r.v2;
+    vec3 b = inner_barycentrics(r, hit.uv);
+    vec3 p0 = b.x * r.v0, p1 = b.y * r.v1, p2 = b.z * r.v2;
     // Error bound of pbrt 4ed. eq. 6.13.
     return LocalPoint(p0 + p1 + p2, gamma(7.0) * (abs(p0) + abs(p1) + abs(p2)), triangle_normal(r), r.v1 - r.v0,
                       hit.uv);
