@@ -1,0 +1,77 @@
+// The scenes in scenes/ show what their own words (scenes[0].extras.expected) and scenes/README.md say.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "host/scene/gltf.h"
+#include "tests/support/render_probe.h"
+
+using namespace etendue;
+
+namespace {
+
+std::filesystem::path example(const std::string& name) {
+    return std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes" / (name + ".gltf");
+}
+
+Estimates render_example(const std::string& name, uint32_t width, uint32_t height, uint32_t passes) {
+    RenderPlan plan;
+    plan.width = width, plan.height = height, plan.passes = passes, plan.seeds = 2;
+    return render_estimates(import_gltf(example(name)), plan);
+}
+
+void check_uniform(const std::string& name, uint32_t passes, double value, double tolerance) {
+    const WindowMean mean = window_mean(render_example(name, 96, 64, passes));
+    MESSAGE(name, ": ", mean.mean, " +- ", mean.standard_error);
+    CHECK(mean.mean == doctest::Approx(value).epsilon(tolerance));
+}
+
+}  // namespace
+
+TEST_CASE("every example scene is read without a warning") {
+    size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes")) {
+        if (entry.path().extension() != ".gltf") continue;
+        const SceneDescription scene = import_gltf(entry.path());
+        CHECK_MESSAGE(scene.warnings.empty(), entry.path().string());
+        CHECK_MESSAGE(!scene.receivers.empty(), entry.path().string());
+        ++count;
+    }
+    CHECK(count >= 9);
+}
+
+TEST_CASE("example furnace_closed: 2 in every direction of a closed sphere that emits 1 and reflects half") {
+    check_uniform("furnace_closed", 32, 2, 0.003);
+}
+
+TEST_CASE("example lamps: the floor below a spot, below the same behind a pane, and below a square lamp") {
+    const Estimates e = render_example("lamps", 240, 135, 16);
+    const auto below = [&](uint32_t x) { return window_mean(e, {x - 2, 92, 5, 3}, 1).mean; };
+    const double spot = below(52), behind_pane = below(120), square = below(187);
+    MESSAGE("spot ", spot, ", behind the pane ", behind_pane, ", square lamp ", square);
+    // What the bay returns adds up to 6 %.
+    CHECK(spot > 0.79);
+    CHECK(spot < 0.85);
+    CHECK(behind_pane / spot == doctest::Approx(0.923).epsilon(0.03));
+    CHECK(square > 0.78);
+    CHECK(square < 0.86);
+}
+
+TEST_SUITE("long") {
+    TEST_CASE("example furnace_smooth: lossless things are invisible") { check_uniform("furnace_smooth", 128, 1, 0.002); }
+
+    TEST_CASE("example furnace_rough: rough surfaces that keep all light are invisible") {
+        check_uniform("furnace_rough", 128, 1, 0.005);
+    }
+
+    TEST_CASE("example spheres: metals show the reflectance of their refractive indices") {
+        const Estimates e = render_example("spheres", 270, 180, 64);
+        const double expected[3][3] = {{0.988, 0.983, 0.980}, {0.945, 0.777, 0.374}, {0.939, 0.618, 0.554}};
+        for (uint32_t i = 0; i < 3; ++i)
+            for (int c = 0; c < 3; ++c) {
+                const double value = window_mean(e, {133 - 80 + 80 * i, 128, 5, 5}, c).mean;
+                CHECK(value == doctest::Approx(expected[i][c]).epsilon(i == 1 ? 0.02 : 0.003));
+            }
+    }
+}
