@@ -81,11 +81,11 @@ TEST_CASE("no light enters a closed box, whatever its scale and place") {
         scene.perspective(1.5, at(0, 0, 0.7));
         scene.transform(variant.translation, variant.scale);
         RenderPlan plan;
-        plan.width = plan.height = 64, plan.passes = 64, plan.seeds = 1;
+        plan.width = plan.height = 96, plan.passes = 64, plan.seeds = 1;
         const Estimates e = render_estimates(scene.import(), plan);
         CHECK(*std::max_element(e.mean.begin(), e.mean.end()) == 0);
         CHECK(e.counters.escaped == 0);
-        CHECK(e.counters.rays > 64 * 64 * 64 * 4);  // paths do go on in there
+        CHECK(e.counters.rays > 4'000'000);  // so that a leak at the edges, of one path in a million, shows
     }
 }
 
