@@ -14,7 +14,7 @@
 //                                                                   textures and colors
 //
 // wo is the direction where the path comes from, wi where it goes. c.importance tells the transport direction: false
-// carries radiance (backward rays: transmission scales by (ior_i / ior_o)², Veach 1997 eq. 5.12), true carries power.
+// carries radiance (backward rays: transmission scales by (ior on the side of wo / ior on the side of wi)², Veach 1997 eq. 5.12), true carries power.
 // Corrections for shading normals are made by the callers (lib/scattering.glsl), once for all classes.
 #include "lib/constants.glsl"
 #include "lib/spectrum.glsl"

@@ -3,7 +3,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstdlib>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
