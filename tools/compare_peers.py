@@ -4,16 +4,17 @@
     tools/compare_peers.py [--threads 1] [--scenes DIR] [--repeats 3] [SCENE[=ERROR] …]
 
 DIR/SCENE holds scene.gltf and reference.exr. ERROR is the relMSE to reach (0.01 where nothing is said). For every renderer
-the tool finds the samples a pixel that come near ERROR, then renders so many in turn with the others, `--repeats` times with
-different seeds: a machine that slows down for a while slows all of them down. Seconds are rendering alone, without start,
-scene and compilation, scaled from the error that was reached to ERROR (error ~ 1/seconds over that short way). The
-reference's own noise (residual) is subtracted.
+the tool finds the two powers of two, in samples a pixel, with ERROR between their errors, then renders them in turn with the others,
+`--repeats` times with different seeds: a machine that slows down for a while slows all of them down. Between the two (medians) a
+power law says how many samples reach ERROR, and the larger one how fast samples are: rendering alone, without start, scene and
+compilation. The reference's own noise (residual) is subtracted.
 
 The peers come into a Python environment under build/peers: Mitsuba 3 (with LLVM 19, unpacked from Debian's package), LuxCore,
 Cycles (Blender's module). One that is missing, or that cannot do a scene, is a line in the report and no failure.
 """
 import argparse
 import json
+import math
 import os
 import statistics
 import subprocess
@@ -39,10 +40,14 @@ def environment_for(name):
     return PEERS / name / "bin" / "python"
 
 
+def installed(name):
+    return (PEERS / name / "installed").exists()
+
+
 def set_up(names):
     for name in names:
         python = environment_for(name)
-        if (PEERS / name / "installed").exists():
+        if installed(name):
             continue
         note(f"setting up {name} in {PEERS.relative_to(ROOT)}")
         PEERS.mkdir(parents=True, exist_ok=True)
@@ -50,7 +55,7 @@ def set_up(names):
         done = subprocess.run([python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check",
                                *PACKAGES.get(name, []), "numpy", "OpenEXR"], capture_output=True, text=True)
         if done.returncode == 0:
-            (PEERS / name / "installed").touch()
+            (PEERS / name / "installed").touch()  # the last thing: an interrupted set-up is done again
         else:
             note(f"{name}: cannot be installed: {(done.stderr.strip().splitlines() or ['?'])[-1]}")
 
@@ -98,13 +103,15 @@ class Etendue:
 class Peer:
     def __init__(self, name, scene, width, height, cores, folder, environment):
         self.name, self.file = name, folder / f"{name}.npy"
+        if not installed(name):
+            raise RuntimeError("could not be installed")
         worker = ROOT / "tools" / "peers" / f"{name}_worker.py"
         self.process = subprocess.Popen(
             ["taskset", "-c", cores, str(environment_for(name)), str(worker), str(scene), str(width), str(height),
              str(cores.count(",") + 1)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
             text=True, env=os.environ | environment)
         self.description = self._reply()["ready"]
-        self.warm = set()
+        self.is_warm = False
 
     def _reply(self):
         line = self.process.stdout.readline()
@@ -122,9 +129,9 @@ class Peer:
 
     def render(self, samples, seed):
         import numpy as np
-        if not self.warm:  # compiles; the kernels do not depend on the number of samples
+        if not self.is_warm:  # compiles; the kernels do not depend on the number of samples
             self._once(1, seed)
-            self.warm.add(1)
+            self.is_warm = True
         reply = self._once(samples, seed)
         return np.load(self.file), reply["seconds"], reply["samples"]
 
@@ -156,55 +163,71 @@ def rel_mse(image, reference):
 # ---- The measurement
 
 def samples_for(renderer, reference, target, residual, budget):
-    """Samples a pixel that come near the error, by steps; fewer where `budget` seconds do not suffice."""
-    samples, seed = 4, 1000
-    for _ in range(6):
-        image, seconds, done = renderer.render(samples, seed)
-        error = max(rel_mse(image, reference) - residual, 1e-9)
-        wanted = max(1, min(done * error / target, samples * 16, samples * budget / max(seconds, 1e-3)))
-        if 0.7 < wanted / samples < 1.4:
+    """Two numbers of samples a pixel, powers of two, with errors above and below the target. Low-discrepancy samples are
+    only at their best in powers of two. Below the target only the larger one where `budget` seconds do not suffice."""
+    errors, samples = {}, 4
+    while samples not in errors:
+        image, seconds, _ = renderer.render(samples, 1000 + len(errors))
+        errors[samples] = error = max(rel_mse(image, reference) - residual, 1e-9)
+        steps = math.log2(error / target)
+        steps = math.ceil(steps) if steps > 0 else math.floor(steps)
+        following = 2 ** max(0, math.log2(samples) + min(steps, 4))
+        if samples > 1 and following > samples and seconds * following / samples > budget:
+            following = samples
+        if error <= target and samples // 2 in errors and errors[samples // 2] > target:
             break
-        samples, seed = max(1, round(wanted)), seed + 1
-    return samples
+        samples = int(following)
+    above = [n for n in errors if errors[n] > target]
+    upper = min((n for n in errors if errors[n] <= target), default=max(errors))
+    return sorted({max(above, default=max(1, upper // 2)), upper})
 
 
 def measure(renderers, reference, target, residual, repeats, budget):
-    rows = {r: [] for r in renderers}
+    """For each renderer {samples: [(seconds, error, samples done, bias of the mean)]}, and what failed why."""
     samples, failed = {}, {}
     for r in renderers:
         try:
             samples[r] = samples_for(r, reference, target, residual, budget)
-            note(f"  {r.name}: {samples[r]} samples a pixel")
         except RuntimeError as e:
             failed[r] = str(e)
+    rows = {r: {n: [] for n in samples[r]} for r in samples}
     for i in range(repeats):
         for r in [r for r in samples if r not in failed]:
             try:
-                image, seconds, done = r.render(samples[r], 2000 + i)
-                error = rel_mse(image, reference) - residual
-                rows[r].append((seconds, error, done, image.mean() / reference.mean() - 1))
-                note(f"  {r.name}: {done:.0f} samples, {seconds:.2f} s, relMSE {error:.5f}")
+                for n in samples[r]:
+                    image, seconds, done = r.render(n, 2000 + i)
+                    error = rel_mse(image, reference) - residual
+                    rows[r][n].append((seconds, error, done, image.mean() / reference.mean() - 1))
+                    note(f"  {r.name}: {done:.0f} samples, {seconds:.2f} s, relMSE {error:.5f}")
             except RuntimeError as e:
                 failed[r] = str(e)
-    return {r: rows[r] for r in renderers if rows[r] and r not in failed}, failed
+    return {r: rows[r] for r in rows if r not in failed}, failed
+
+
+def to_error(points, target):
+    """Samples at which a power law through two (samples, error) meets the target; error ~ 1/samples through one."""
+    (n0, e0), (n1, e1) = points[0], points[-1]
+    power = math.log(e0 / e1) / math.log(n1 / n0) if n1 != n0 and e0 > e1 else 1.0
+    return n1 * (e1 / target) ** (1 / power)
 
 
 def table(name, target, results, pixels, base):
     print(f"\n{name}: seconds to relMSE {target:g}")
-    print(f"{'':<12}{'seconds':>9}{'spread':>9}{'samples':>9}{'M samples/s':>13}{'mean':>9}   time / Mitsuba's")
+    print(f"{'':<10}{'seconds':>9}{'samples':>9}{'M samples/s':>13}{'spread':>8}{'mean':>9}   time / Mitsuba's   measured")
+    median = statistics.median
     summary = {}
     for r, rows in results.items():
-        to_error = sorted(seconds * error / target for seconds, error, _, _ in rows)
-        summary[r] = statistics.median(to_error)
-    reference = next((summary[r] for r in summary if r.name == base), None)
-    for r, rows in results.items():
-        rate = statistics.median(done * pixels / seconds / 1e6 for seconds, _, done, _ in rows)
-        needed = statistics.median(done * error / target for _, error, done, _ in rows)
-        to_error = [seconds * error / target for seconds, error, _, _ in rows]
-        spread = (max(to_error) - min(to_error)) / summary[r]
-        ratio = f"{summary[r] / reference:.2f}" if reference else "-"
-        bias = statistics.mean(b for _, _, _, b in rows)
-        print(f"{r.name:<12}{summary[r]:>9.2f}{spread:>8.0%} {needed:>8.0f}{rate:>13.3f}{bias:>+9.2%}   {ratio}")
+        points = [(median(done for _, _, done, _ in rows[n]), median(error for _, error, _, _ in rows[n])) for n in rows]
+        last = rows[max(rows)]
+        speeds = [done * pixels / seconds / 1e6 for seconds, _, done, _ in last]
+        needed = to_error(points, target)
+        summary[r] = (needed * pixels / 1e6 / median(speeds), needed, median(speeds),
+                      (max(speeds) - min(speeds)) / median(speeds), statistics.mean(row[3] for row in last), points)
+    reference = next((summary[r][0] for r in summary if r.name == base), None)
+    for r, (seconds, needed, speed, spread, bias, points) in summary.items():
+        ratio = f"{seconds / reference:.2f}" if reference else "-"
+        measured = ", ".join(f"{n:.0f} samples {e:.2g}" for n, e in points)
+        print(f"{r.name:<10}{seconds:>9.2f}{needed:>9.0f}{speed:>13.3f}{spread:>8.0%}{bias:>+9.2%}   {ratio:<16}   {measured}")
 
 
 def run(a):
@@ -265,8 +288,10 @@ def main():
             if not (folder / file).exists():
                 parser.error(f"{folder / file} is not there; --scenes names the folder of the scenes' folders")
     # Images are read in an environment of the tool's own: this script runs again there.
-    if Path(sys.prefix) != PEERS / "tool":
+    if Path(sys.prefix).resolve() != (PEERS / "tool").resolve():
         set_up(["tool", *a.peers])
+        if not installed("tool"):
+            sys.exit("numpy and OpenEXR could not be installed")
         os.execv(environment_for("tool"), [str(environment_for("tool")), *sys.argv])
     run(a)
 
