@@ -22,7 +22,8 @@ float ggx_average_loss(float alpha) {
 // The same for dielectric facets that reflect and refract: the part of the light from mu that neither leaves
 // above nor below. Small networks of one hidden layer, y = z / sqrt(1 + z²), trained for indices 1.2 to 2.4
 // (beyond, the nearest of these is taken): at index 1.5 the sum of both lobes is 1 within 0.003, for alpha
-// below 0.05 within 0.015 at grazing angles, and its mean within 0.001; towards 1.2 and 2.4 within 0.008.
+// below 0.05 within 0.015 at grazing angles, and its mean within 0.001; towards 1.2 and 2.4 within 0.05 at grazing
+// angles, in the mean within 0.005.
 float ggx_dielectric_loss(float mu, float alpha, float eta) {
     float inv_index = clamp(min(eta, 1.0 / eta), 1.0 / 2.4, 1.0 / 1.2);
     float width = alpha * (eta > 1.0 ? 1.0 : 0.7);
