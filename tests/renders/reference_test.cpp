@@ -62,23 +62,30 @@ std::optional<Result> compare_with(const Reference& reference, uint32_t passes, 
     MESSAGE(reference.name, ", pixels: ", describe(result.pixels));
     MESSAGE(reference.name, ", tiles:  ", describe(result.tiles));
     MESSAGE(reference.name, ", bias ", 100 * result.bias, " % +- ", 100 * result.bias_error, " %");
-    if (!result.pixels.holds || !result.tiles.holds || std::fabs(result.bias) > 0.003) keep(reference, e, expected);
+    if (!result.pixels.holds || !result.tiles.holds || result.tiles.rms_z > 1.2 || std::fabs(result.bias) > 0.003)
+        keep(reference, e, expected);
     return result;
+}
+
+void check_noise(const Result& result) {
+    CHECK(result.pixels.holds);
+    CHECK(result.tiles.holds);
+    // 1 or less by chance alone, to a few hundredths: small differences in many places show here first.
+    CHECK(result.pixels.rms_z < 1.1);
+    CHECK(result.tiles.rms_z < 1.2);
 }
 
 void check_reference(const Reference& reference, uint32_t passes, uint32_t seeds) {
     const auto result = compare_with(reference, passes, seeds);
     if (!result) return;
-    CHECK(result->pixels.holds);
-    CHECK(result->tiles.holds);
+    check_noise(*result);
     CHECK(std::fabs(result->bias) < 0.003);
 }
 
 void check_mean(const Reference& reference, uint32_t passes, uint32_t seeds, double allowed_bias) {
     const auto result = compare_with(reference, passes, seeds);
     if (!result) return;
-    CHECK(result->pixels.holds);
-    CHECK(result->tiles.holds);
+    check_noise(*result);
     CHECK(std::fabs(result->bias) < allowed_bias + 4 * result->bias_error);
 }
 
@@ -86,9 +93,9 @@ const Reference cornell = {"cornell_rgb", 4.4e-4}, plates = {"veach_mis", 2.0e-4
 
 }  // namespace
 
-TEST_CASE("the Cornell box looks as its reference") { check_reference(cornell, 16, 8); }
-TEST_CASE("glossy plates under lights of all sizes look as their reference") { check_reference(plates, 64, 8); }
-TEST_CASE("spheres in a furnace look as their reference") { check_reference(furnace, 64, 8); }
+TEST_CASE("the Cornell box looks as its reference") { check_reference(cornell, 16, 16); }
+TEST_CASE("glossy plates under lights of all sizes look as their reference") { check_reference(plates, 128, 16); }
+TEST_CASE("spheres in a furnace look as their reference") { check_reference(furnace, 64, 16); }
 
 TEST_SUITE("long") {
     TEST_CASE("the mean of the Cornell box is that of its reference within 0.1 %") { check_mean(cornell, 128, 16, 0.001); }
