@@ -1,4 +1,5 @@
 """Builds small glTF scenes with embedded buffers: materials, meshes, shapes, lights, cameras. Metres, +Y up."""
+
 import base64
 import json
 import math
@@ -51,7 +52,9 @@ class Gltf:
             optics["inside"] = inside
         return self._material({"name": name, "extensions": {"ETD_optics": optics}})
 
-    def principled(self, name, color, metallic=0.0, roughness=0.5, transmission=None, ior=None, attenuation=None):
+    def principled(
+        self, name, color, metallic=0.0, roughness=0.5, transmission=None, ior=None, attenuation=None
+    ):
         """glTF's own material. `attenuation`: (color, distance in m) of the glass inside."""
         pbr = {"baseColorFactor": [*color, 1], "metallicFactor": metallic, "roughnessFactor": roughness}
         extensions = {}
@@ -70,9 +73,16 @@ class Gltf:
     def emitter(self, name, luminance, color=(1, 1, 1)):
         """A black surface of that radiance (color × luminance) on its front."""
         self.extensions.add("KHR_materials_emissive_strength")
-        return self._material({"name": name, "emissiveFactor": list(color), "extensions": {
-            "KHR_materials_emissive_strength": {"emissiveStrength": luminance},
-            "ETD_optics": {"surface": {"class": "lambertian", "reflectance": 0}}}})
+        return self._material(
+            {
+                "name": name,
+                "emissiveFactor": list(color),
+                "extensions": {
+                    "KHR_materials_emissive_strength": {"emissiveStrength": luminance},
+                    "ETD_optics": {"surface": {"class": "lambertian", "reflectance": 0}},
+                },
+            }
+        )
 
     def medium(self, name, **parameters):
         self.media.append({"name": name, "class": "homogeneous", **parameters})
@@ -80,8 +90,13 @@ class Gltf:
 
     # Objects.
     def shape(self, name, class_name, material, translation=None, matrix=None, **parameters):
-        node = {"name": name, **({"matrix": matrix} if matrix else {"translation": list(translation or (0, 0, 0))})}
-        node["extensions"] = {"ETD_optics": {"geometry": {"class": class_name, **parameters, "material": material}}}
+        node = {
+            "name": name,
+            **({"matrix": matrix} if matrix else {"translation": list(translation or (0, 0, 0))}),
+        }
+        node["extensions"] = {
+            "ETD_optics": {"geometry": {"class": class_name, **parameters, "material": material}}
+        }
         self.nodes.append(node)
 
     def mesh(self, name, material, positions, triangles, normals=None, **placement):
@@ -89,9 +104,15 @@ class Gltf:
         attributes = {"POSITION": self._accessor(positions, "VEC3", "f", bounds=True)}
         if normals:
             attributes["NORMAL"] = self._accessor(normals, "VEC3", "f")
-        indices = self._accessor([[i] for t in triangles for i in t], "SCALAR", "H" if len(positions) < 65536 else "I")
-        self.meshes.append({"name": name, "primitives": [
-            {"attributes": attributes, "indices": indices, "material": material}]})
+        indices = self._accessor(
+            [[i] for t in triangles for i in t], "SCALAR", "H" if len(positions) < 65536 else "I"
+        )
+        self.meshes.append(
+            {
+                "name": name,
+                "primitives": [{"attributes": attributes, "indices": indices, "material": material}],
+            }
+        )
         self.nodes.append({"name": name, **placement, "mesh": len(self.meshes) - 1})
 
     def quad(self, name, material, corners):
@@ -103,9 +124,13 @@ class Gltf:
         w, h, d = size[0] / 2, size[1], size[2] / 2
         positions, triangles = [], []
         for corners in (
-                [(-w, 0, d), (w, 0, d), (w, h, d), (-w, h, d)], [(w, 0, -d), (-w, 0, -d), (-w, h, -d), (w, h, -d)],
-                [(w, 0, d), (w, 0, -d), (w, h, -d), (w, h, d)], [(-w, 0, -d), (-w, 0, d), (-w, h, d), (-w, h, -d)],
-                [(-w, h, d), (w, h, d), (w, h, -d), (-w, h, -d)], [(-w, 0, -d), (w, 0, -d), (w, 0, d), (-w, 0, d)]):
+            [(-w, 0, d), (w, 0, d), (w, h, d), (-w, h, d)],
+            [(w, 0, -d), (-w, 0, -d), (-w, h, -d), (w, h, -d)],
+            [(w, 0, d), (w, 0, -d), (w, h, -d), (w, h, d)],
+            [(-w, 0, -d), (-w, 0, d), (-w, h, d), (-w, h, -d)],
+            [(-w, h, d), (w, h, d), (w, h, -d), (-w, h, -d)],
+            [(-w, 0, -d), (w, 0, -d), (w, 0, d), (-w, 0, d)],
+        ):
             first = len(positions)
             positions += corners
             triangles += [[first, first + 1, first + 2], [first, first + 2, first + 3]]
@@ -124,13 +149,29 @@ class Gltf:
         """A point or spot light (cd) or a directional one (lx) that shines along -z of its node."""
         self.extensions.add("KHR_lights_punctual")
         self.lights.append({"name": name, "type": kind, "color": list(color), "intensity": intensity, **rest})
-        self.nodes.append({"name": name, "matrix": matrix,
-                           "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}}})
+        self.nodes.append(
+            {
+                "name": name,
+                "matrix": matrix,
+                "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}},
+            }
+        )
 
     def camera(self, position, target, yfov_degrees, aspect, name="camera"):
-        self.cameras.append({"name": name, "type": "perspective", "perspective": {
-            "yfov": round(math.radians(yfov_degrees), 9), "aspectRatio": aspect, "znear": 0.01}})
-        self.nodes.append({"name": name, "camera": len(self.cameras) - 1, "matrix": look_at(position, target)})
+        self.cameras.append(
+            {
+                "name": name,
+                "type": "perspective",
+                "perspective": {
+                    "yfov": round(math.radians(yfov_degrees), 9),
+                    "aspectRatio": aspect,
+                    "znear": 0.01,
+                },
+            }
+        )
+        self.nodes.append(
+            {"name": name, "camera": len(self.cameras) - 1, "matrix": look_at(position, target)}
+        )
 
     # The file.
     def write(self, path):
@@ -142,12 +183,25 @@ class Gltf:
         extensions = {"ETD_optics": optics} if optics else {}
         if self.lights:
             extensions["KHR_lights_punctual"] = {"lights": self.lights}
-        root = {"asset": {"version": "2.0", "generator": "tools/make_scenes.py"},
-                "extensionsUsed": sorted(self.extensions), "extensions": extensions, "scene": 0,
-                "scenes": [{"name": self.name, "extras": {"expected": self.expected},
-                            "nodes": list(range(len(self.nodes)))}],
-                "nodes": self.nodes, "cameras": self.cameras, "materials": self.materials, "meshes": self.meshes,
-                "accessors": self.accessors, "bufferViews": self.views}
+        root = {
+            "asset": {"version": "2.0", "generator": "tools/make_scenes.py"},
+            "extensionsUsed": sorted(self.extensions),
+            "extensions": extensions,
+            "scene": 0,
+            "scenes": [
+                {
+                    "name": self.name,
+                    "extras": {"expected": self.expected},
+                    "nodes": list(range(len(self.nodes))),
+                }
+            ],
+            "nodes": self.nodes,
+            "cameras": self.cameras,
+            "materials": self.materials,
+            "meshes": self.meshes,
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+        }
         if self.data:
             uri = "data:application/octet-stream;base64," + base64.b64encode(self.data).decode()
             root["buffers"] = [{"byteLength": len(self.data), "uri": uri}]
@@ -163,8 +217,12 @@ class Gltf:
         packed = b"".join(struct.pack(f"<{len(row)}{letter}", *row) for row in rows)
         self.views.append({"buffer": 0, "byteOffset": len(self.data), "byteLength": len(packed)})
         self.data += packed
-        accessor = {"bufferView": len(self.views) - 1, "count": len(rows), "type": kind,
-                    "componentType": {"f": 5126, "H": 5123, "I": 5125}[letter]}
+        accessor = {
+            "bufferView": len(self.views) - 1,
+            "count": len(rows),
+            "type": kind,
+            "componentType": {"f": 5126, "H": 5123, "I": 5125}[letter],
+        }
         if bounds:
             single = [struct.unpack(f"<{len(row)}f", struct.pack(f"<{len(row)}f", *row)) for row in rows]
             accessor |= {"min": [min(c) for c in zip(*single)], "max": [max(c) for c in zip(*single)]}

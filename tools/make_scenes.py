@@ -4,6 +4,7 @@
 A scene is a function here that returns a Gltf with its expected value in words; those words go into the file
 (scenes[0].extras.expected) and into the folder's README.md.
 """
+
 import math
 import random
 import sys
@@ -18,8 +19,10 @@ GOLD = {"eta": [0.18, 0.42, 1.37], "k": [3.42, 2.35, 1.77]}
 COPPER = {"eta": [0.22, 1.03, 1.22], "k": [3.60, 2.58, 2.45]}
 SILVER = {"eta": [0.06, 0.06, 0.04], "k": [4.27, 3.59, 2.65]}
 
-OCTAHEDRON = ([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
-              [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]])
+OCTAHEDRON = (
+    [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]],
+    [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]],
+)
 
 
 def backdrop(scene, material, width, front, back, height, radius, steps=10):
@@ -27,8 +30,9 @@ def backdrop(scene, material, width, front, back, height, radius, steps=10):
     profile = [(front, 0.0, (0, 1))]
     for i in range(steps + 1):
         a = i / steps * math.pi / 2
-        profile.append((back + radius - radius * math.sin(a), radius - radius * math.cos(a),
-                        (math.sin(a), math.cos(a))))
+        profile.append(
+            (back + radius - radius * math.sin(a), radius - radius * math.cos(a), (math.sin(a), math.cos(a)))
+        )
     profile.append((back, height, (1, 0)))
     positions, normals, triangles = [], [], []
     for z, y, (nz, ny) in profile:
@@ -42,10 +46,13 @@ def backdrop(scene, material, width, front, back, height, radius, steps=10):
 
 
 def example():
-    s = Gltf("example", "Glass, metal and matte spheres on a seamless grey backdrop below a large lamp. The clear sphere shows "
-             "the room upside down and gathers the lamp's light in its shadow; the green and amber ones take on "
-             "the colour that glass has after some decimetres (Beer-Lambert); gold and copper follow Fresnel's equations "
-             "for their measured refractive indices.")
+    s = Gltf(
+        "example",
+        "Glass, metal and matte spheres on a seamless grey backdrop below a large lamp. The clear sphere"
+        " shows the room upside down and gathers the lamp's light in its shadow; the green and amber ones"
+        " take on the colour that glass has after some decimetres (Beer-Lambert); gold and copper follow"
+        " Fresnel's equations for their measured refractive indices.",
+    )
     s.environment = {"class": "constant", "radiance": [0.36, 0.37, 0.39]}
     s.medium("glass", ior=1.52)
     s.medium("green glass", ior=1.52, absorption=[4.5, 0.5, 2.6])
@@ -62,19 +69,30 @@ def example():
     backdrop(s, grey, 14, 6, -3, 6, 1.5)
     s.shape("lamp", "rectangle", lamp, matrix=facing([-2.4, 4.4, 1.6], [0.5, -1, -0.4]), size=[4, 3])
     for name, material, radius, x, z in (
-            ("clear", clear, 0.62, 0.05, 0.55), ("gold", gold, 0.80, -1.40, -0.55), ("copper", copper, 0.55, 1.38, 0.20),
-            ("red clay", red, 0.42, 0.42, -1.15), ("blue clay", blue, 0.95, 2.15, -1.55), ("green", green, 0.34, -0.98, 1.12),
-            ("amber", amber, 0.26, 0.93, 1.35), ("small gold", gold, 0.17, -0.28, 1.62),
-            ("small red clay", red, 0.24, -2.15, 0.75), ("small blue clay", blue, 0.20, 1.98, 1.22)):
+        ("clear", clear, 0.62, 0.05, 0.55),
+        ("gold", gold, 0.80, -1.40, -0.55),
+        ("copper", copper, 0.55, 1.38, 0.20),
+        ("red clay", red, 0.42, 0.42, -1.15),
+        ("blue clay", blue, 0.95, 2.15, -1.55),
+        ("green", green, 0.34, -0.98, 1.12),
+        ("amber", amber, 0.26, 0.93, 1.35),
+        ("small gold", gold, 0.17, -0.28, 1.62),
+        ("small red clay", red, 0.24, -2.15, 0.75),
+        ("small blue clay", blue, 0.20, 1.98, 1.22),
+    ):
         s.shape(name, "sphere", material, [x, radius, z], radius=radius)
     s.camera([0.25, 1.75, 6.4], [0.08, 0.66, 0], 30, 1.6)
     return s
 
 
 def cornell_box():
-    s = Gltf("cornell_box", "An open-fronted room of 3.2 x 2.4 x 3 m (width, height, depth) with two boxes, lit by one lamp of 0.9 x 0.7 m and "
-             "luminance 18 (times its colour): the white walls and boxes take on the blue and the orange of the side walls. The flux "
-             "of the lamp is pi x 18 x 0.8653 x 0.63 m² = 30.83 lm; 0.8653 is the luminance of its colour.")
+    s = Gltf(
+        "cornell_box",
+        "An open-fronted room of 3.2 x 2.4 x 3 m (width, height, depth) with two boxes, lit by one lamp of"
+        " 0.9 x 0.7 m and luminance 18 (times its colour): the white walls and boxes take on the blue and the"
+        " orange of the side walls. The flux of the lamp is pi x 18 x 0.8653 x 0.63 m² = 30.83 lm; 0.8653 is"
+        " the luminance of its colour.",
+    )
     white = s.surface("white", "lambertian", reflectance=0.74)
     blue = s.surface("blue", "lambertian", reflectance=[0.10, 0.22, 0.55])
     orange = s.surface("orange", "lambertian", reflectance=[0.72, 0.30, 0.06])
@@ -85,9 +103,15 @@ def cornell_box():
     s.quad("back", white, [[-w, 0, -d], [w, 0, -d], [w, h, -d], [-w, h, -d]])
     s.quad("left", blue, [[-w, 0, d], [-w, 0, -d], [-w, h, -d], [-w, h, d]])
     s.quad("right", orange, [[w, 0, -d], [w, 0, d], [w, h, d], [w, h, -d]])
-    s.quad("lamp", lamp, [[-0.45, h - 0.01, -0.35], [0.45, h - 0.01, -0.35], [0.45, h - 0.01, 0.35], [-0.45, h - 0.01, 0.35]])
-    for name, size, x, z, degrees in (("tall box", [0.85, 1.45, 0.85], -0.62, -0.45, 20),
-                                      ("low box", [0.85, 0.70, 0.85], 0.58, 0.38, -17)):
+    s.quad(
+        "lamp",
+        lamp,
+        [[-0.45, h - 0.01, -0.35], [0.45, h - 0.01, -0.35], [0.45, h - 0.01, 0.35], [-0.45, h - 0.01, 0.35]],
+    )
+    for name, size, x, z, degrees in (
+        ("tall box", [0.85, 1.45, 0.85], -0.62, -0.45, 20),
+        ("low box", [0.85, 0.70, 0.85], 0.58, 0.38, -17),
+    ):
         a = math.radians(degrees) / 2
         s.box(name, white, size, translation=[x, 0, z], rotation=[0, math.sin(a), 0, math.cos(a)])
     s.camera([0, 1.2, 5.6], [0, 1.2, 0], 32.4, 4 / 3)
@@ -95,32 +119,43 @@ def cornell_box():
 
 
 def spheres():
-    s = Gltf("spheres", "Six spheres before a constant surround of radiance 1. The clear and the frosted glass sphere (top left and middle) lose nothing and "
-             "are invisible: 1. The tinted one (top right) is darker where the way through it is longer. The metals (below: "
-             "silver, gold, copper) show at their centres the reflectance of their refractive indices at normal incidence: silver "
-             "(0.988, 0.983, 0.980), gold (0.945, 0.777, 0.374), copper (0.939, 0.618, 0.554); the gold is rough, and "
-             "is within 2 % of that.")
+    s = Gltf(
+        "spheres",
+        "Six spheres before a constant surround of radiance 1. The clear and the frosted glass sphere (top"
+        " left and middle) lose nothing and are invisible: 1. The tinted one (top right) is darker where the"
+        " way through it is longer. The metals (below: silver, gold, copper) show at their centres the"
+        " reflectance of their refractive indices at normal incidence: silver (0.988, 0.983, 0.980), gold"
+        " (0.945, 0.777, 0.374), copper (0.939, 0.618, 0.554); the gold is rough, and is within 2 % of that.",
+    )
     s.environment = {"class": "constant", "radiance": 1}
     s.medium("glass", ior=1.5)
     s.medium("tinted glass", ior=1.5, absorption=[0.9, 0.35, 0.10])
-    kinds = [s.surface("clear glass", "dielectric", inside="glass"),
-             s.surface("frosted glass", "dielectric", inside="glass", alpha=0.2, multiscatter=True),
-             s.surface("tinted glass", "dielectric", inside="tinted glass"),
-             s.surface("silver", "conductor", **SILVER),
-             s.surface("rough gold", "conductor", alpha=0.15, multiscatter=True, **GOLD),
-             s.surface("copper", "conductor", **COPPER)]
+    kinds = [
+        s.surface("clear glass", "dielectric", inside="glass"),
+        s.surface("frosted glass", "dielectric", inside="glass", alpha=0.2, multiscatter=True),
+        s.surface("tinted glass", "dielectric", inside="tinted glass"),
+        s.surface("silver", "conductor", **SILVER),
+        s.surface("rough gold", "conductor", alpha=0.15, multiscatter=True, **GOLD),
+        s.surface("copper", "conductor", **COPPER),
+    ]
     for i, kind in enumerate(kinds):
-        s.shape(s.materials[kind]["name"], "sphere", kind, [2.3 * (i % 3 - 1), 1.15 - 2.3 * (i // 3), 0], radius=1)
+        s.shape(
+            s.materials[kind]["name"], "sphere", kind, [2.3 * (i % 3 - 1), 1.15 - 2.3 * (i // 3), 0], radius=1
+        )
     s.camera([0, 0, 14], [0, 0, 0], 21, 1.5)
     return s
 
 
 def lamps():
-    s = Gltf("lamps", "Three bays with lamps of 45 cd, 3 m above a floor of reflectance 0.5, and two spots on the back wall. Below the left one, a "
-             "spot, the floor gets 45 / 3² = 5 lx and has the luminance 5 x 0.5 / pi = 0.80 (a little more with the light that "
-             "the room returns). The middle one shines through a thin pane, which lets 2n / (n² + 1) = 0.923 of it "
-             "pass: 0.73. The right one is a square of 0.4 m and luminance 281.25, 45 cd straight down: 0.79, falling off "
-             "with the fourth power of the cosine, and with soft shadows where the spots' are sharp.")
+    s = Gltf(
+        "lamps",
+        "Three bays with lamps of 45 cd, 3 m above a floor of reflectance 0.5, and two spots on the back"
+        " wall. Below the left one, a spot, the floor gets 45 / 3² = 5 lx and has the luminance 5 x 0.5 / pi"
+        " = 0.80 (a little more with the light that the room returns). The middle one shines through a thin"
+        " pane, which lets 2n / (n² + 1) = 0.923 of it pass: 0.73. The right one is a square of 0.4 m and"
+        " luminance 281.25, 45 cd straight down: 0.79, falling off with the fourth power of the cosine, and"
+        " with soft shadows where the spots' are sharp.",
+    )
     floor = s.surface("floor", "lambertian", reflectance=0.5)
     wall = s.surface("wall", "lambertian", reflectance=[0.42, 0.40, 0.37])
     dark = s.surface("partition", "lambertian", reflectance=0.06)
@@ -139,8 +174,14 @@ def lamps():
         s.light("spot", "spot", 45, look_along([x, 3, 0], down, (0, 0, -1)), **cones)
     s.shape("square lamp", "rectangle", lamp, matrix=facing([2.6, 3, 0], down, (0, 0, -1)), size=[0.4, 0.4])
     for x in (-2.6, 0):
-        s.light("wall washer", "spot", 10, look_along([x, 3.4, -1.55], [0, -1, -0.3]), (1, 0.72, 0.40),
-                spot={"innerConeAngle": 0.1, "outerConeAngle": 0.7})
+        s.light(
+            "wall washer",
+            "spot",
+            10,
+            look_along([x, 3.4, -1.55], [0, -1, -0.3]),
+            (1, 0.72, 0.40),
+            spot={"innerConeAngle": 0.1, "outerConeAngle": 0.7},
+        )
     s.shape("pane", "rectangle", pane, matrix=facing([0, 1.3, 0], [0, 1, 0], (0, 0, -1)), size=[1.7, 1.7])
     sideways = facing([0, 0, 0], [1, 0, 0])
     for z in (-0.85, 0.85):
@@ -153,8 +194,13 @@ def lamps():
 
 
 def materials():
-    s = Gltf("materials", "glTF's metallic-roughness material: metal (back row), glass (middle) and painted plastic (front), roughness from 0 (left) to "
-             "1 (right). Highlights widen from left to right; no sphere is brighter than what it mirrors.")
+    s = Gltf(
+        "materials",
+        "glTF's metallic-roughness material: metal (back row), glass (middle) and painted plastic (front),"
+        " roughness from 0 (left) to 1 (right). Highlights widen from left to right; rough metal and rough"
+        " glass darken, as light that meets more than one facet is lost; no sphere is brighter than what it"
+        " mirrors.",
+    )
     s.environment = {"class": "constant", "radiance": [0.32, 0.34, 0.38]}
     floor = s.surface("floor", "lambertian", reflectance=0.42)
     backdrop(s, floor, 20, 8, -4.5, 7, 2)
@@ -162,13 +208,30 @@ def materials():
     s.shape("lamp", "rectangle", lamp, matrix=facing([-2.5, 5, 2.5], [0.45, -1, -0.5]), size=[4, 2])
     s.shape("strip", "rectangle", lamp, matrix=facing([5.5, 2.5, 3], [-1, -0.3, -0.6]), size=[0.7, 4])
     columns = 6
-    for row, (name, color, metallic, transmission) in enumerate((
-            ("plastic", [0.05, 0.23, 0.50], 0, None), ("glass", [1, 1, 1], 0, 1), ("metal", [0.91, 0.62, 0.38], 1, None))):
+    for row, (name, color, metallic, transmission) in enumerate(
+        (
+            ("plastic", [0.05, 0.23, 0.50], 0, None),
+            ("glass", [1, 1, 1], 0, 1),
+            ("metal", [0.91, 0.62, 0.38], 1, None),
+        )
+    ):
         for i in range(columns):
             roughness = i / (columns - 1)
-            material = s.principled(f"{name}, roughness {roughness:.1f}", color, metallic, roughness, transmission,
-                                    1.5 if transmission else None)
-            s.shape(f"{name} {i}", "sphere", material, [1.08 * (i - (columns - 1) / 2), 0.46, 1.7 - 1.5 * row], radius=0.46)
+            material = s.principled(
+                f"{name}, roughness {roughness:.1f}",
+                color,
+                metallic,
+                roughness,
+                transmission,
+                1.5 if transmission else None,
+            )
+            s.shape(
+                f"{name} {i}",
+                "sphere",
+                material,
+                [1.08 * (i - (columns - 1) / 2), 0.46, 1.7 - 1.5 * row],
+                radius=0.46,
+            )
     s.camera([0, 6.2, 9.0], [0, 0.28, 0.15], 25, 1.6)
     return s
 
@@ -188,55 +251,104 @@ def many_lights():
         for x in (-3.6, 3.6):
             s.shape("pillar", "cylinder", metal, matrix=upright[:12] + [x, 2.5, z, 1], radius=0.3, height=5)
     r, luminance = 0.08, 4.0
-    colors = (("amber", (1, 0.50, 0.12)), ("rose", (1, 0.22, 0.26)), ("white", (1, 0.84, 0.62)),
-              ("teal", (0.10, 0.72, 0.60)), ("blue", (0.20, 0.36, 1)))
+    colors = (
+        ("amber", (1, 0.50, 0.12)),
+        ("rose", (1, 0.22, 0.26)),
+        ("white", (1, 0.84, 0.62)),
+        ("teal", (0.10, 0.72, 0.60)),
+        ("blue", (0.20, 0.36, 1)),
+    )
     places = [[] for _ in colors]
     random.seed(7)
     for i in range(25):
         for j in range(50):
-            x, z = (11 * (v + random.uniform(0.1, 0.9)) / n + low for v, n, low in ((i, 25, -5.5), (j * 17 / 11, 50, -11.6)))
-            y = 3.1 + 0.4 * math.sin(0.9 * x + 0.5 * z) + 0.3 * math.cos(0.7 * z - 0.3 * x) + random.uniform(-0.1, 0.1)
+            x, z = (
+                11 * (v + random.uniform(0.1, 0.9)) / n + low
+                for v, n, low in ((i, 25, -5.5), (j * 17 / 11, 50, -11.6))
+            )
+            y = (
+                3.1
+                + 0.4 * math.sin(0.9 * x + 0.5 * z)
+                + 0.3 * math.cos(0.7 * z - 0.3 * x)
+                + random.uniform(-0.1, 0.1)
+            )
             band = 2.5 + 2.5 * math.sin(0.35 * z + 0.45 * x) + random.gauss(0, 0.5)
             places[min(max(int(band), 0), 4)].append([x, y, z])
     flux = 0
     for (name, color), some in zip(colors, places):
-        s.instances(f"{name} lanterns", s.emitter(f"{name} lantern", luminance, color),
-                    [[r * x for x in p] for p in OCTAHEDRON[0]], OCTAHEDRON[1], some)
-        flux += math.pi * luminance * (0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]) * (
-            4 * math.sqrt(3) * r * r * len(some))
-    s.expected = (f"A hall below {sum(map(len, places))} coloured paper lanterns, 10,000 emissive triangles in all: an even light on the "
-                  f"floor in the colours of the lanterns above it, and noise as low as with a few lamps. Together they emit {flux:.0f} lm: pi x "
-                  f"{luminance} x the luminance of each colour x the octahedra's area of 4 sqrt(3) r², r = {r} m.")
+        s.instances(
+            f"{name} lanterns",
+            s.emitter(f"{name} lantern", luminance, color),
+            [[r * x for x in p] for p in OCTAHEDRON[0]],
+            OCTAHEDRON[1],
+            some,
+        )
+        flux += (
+            math.pi
+            * luminance
+            * (0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2])
+            * (4 * math.sqrt(3) * r * r * len(some))
+        )
+    s.expected = (
+        f"A hall below {sum(map(len, places))} coloured paper lanterns, 10,000 emissive triangles in all: an"
+        " even light on the floor in the colours of the lanterns above it, and noise as low as with a few"
+        f" lamps. Together they emit {flux:.0f} lm: pi x {luminance} x the luminance of each colour x the"
+        f" octahedra's area of 4 sqrt(3) r², r = {r} m."
+    )
     s.camera([0.6, 1.65, 7.6], [-0.1, 1.55, 0], 46, 1.6)
     return s
 
 
 def furnace_smooth():
-    s = Gltf("furnace_smooth", "Lossless things in a constant surround of radiance 1: white plaster, a perfect mirror, clear glass, a "
-             "thin pane, white glossy paint, and a mirror cylinder. All are invisible: every pixel is 1 within 0.2 %.")
+    s = Gltf(
+        "furnace_smooth",
+        "Lossless things in a constant surround of radiance 1: white plaster, a perfect mirror, clear glass,"
+        " a thin pane, white glossy paint, and a mirror cylinder. All are invisible: every pixel is 1 within"
+        " 0.2 %.",
+    )
     s.environment = {"class": "constant", "radiance": 1}
     s.medium("glass", ior=1.5)
-    for i, (shape, kind, parameters) in enumerate((
+    for i, (shape, kind, parameters) in enumerate(
+        (
             ("sphere", s.surface("white", "lambertian", reflectance=1), {"radius": 1}),
             ("sphere", s.surface("mirror", "conductor", reflectance=1), {"radius": 1}),
             ("sphere", s.surface("glass", "dielectric", inside="glass"), {"radius": 1}),
             ("disk", s.surface("pane", "thin_dielectric", ior=1.5), {"radius": 1}),
             ("sphere", s.principled("white paint", [1, 1, 1], 0, 0), {"radius": 1}),
-            ("cylinder", s.surface("mirror cylinder", "conductor", reflectance=1), {"radius": 0.8, "height": 1.8}))):
-        s.shape(s.materials[kind]["name"], shape, kind, matrix=facing([2.3 * (i % 3 - 1), 1.15 - 2.3 * (i // 3), 0], [0.5, 0.3, 1]),
-                **parameters)
+            (
+                "cylinder",
+                s.surface("mirror cylinder", "conductor", reflectance=1),
+                {"radius": 0.8, "height": 1.8},
+            ),
+        )
+    ):
+        s.shape(
+            s.materials[kind]["name"],
+            shape,
+            kind,
+            matrix=facing([2.3 * (i % 3 - 1), 1.15 - 2.3 * (i // 3), 0], [0.5, 0.3, 1]),
+            **parameters,
+        )
     s.camera([0, 0, 14], [0, 0, 0], 21, 1.5)
     return s
 
 
 def furnace_rough():
-    s = Gltf("furnace_rough", "Rough mirrors (above) and rough glass (below) that keep the light scattered more than once between facets, of GGX width "
-             "0.1, 0.3 and 0.7 from left to right, in a constant surround of radiance 1: invisible, every pixel is 1 within 0.5 %.")
+    s = Gltf(
+        "furnace_rough",
+        "Rough mirrors (above) and rough glass (below) that keep the light scattered more than once between"
+        " facets, of GGX width 0.1, 0.3 and 0.7 from left to right, in a constant surround of radiance 1:"
+        " invisible, every pixel is 1 within 0.5 %.",
+    )
     s.environment = {"class": "constant", "radiance": 1}
     s.medium("glass", ior=1.5)
     for i, alpha in enumerate((0.1, 0.3, 0.7)):
-        metal = s.surface(f"mirror, alpha {alpha}", "conductor", reflectance=1, alpha=alpha, multiscatter=True)
-        glass = s.surface(f"glass, alpha {alpha}", "dielectric", inside="glass", alpha=alpha, multiscatter=True)
+        metal = s.surface(
+            f"mirror, alpha {alpha}", "conductor", reflectance=1, alpha=alpha, multiscatter=True
+        )
+        glass = s.surface(
+            f"glass, alpha {alpha}", "dielectric", inside="glass", alpha=alpha, multiscatter=True
+        )
         s.shape(f"mirror {i}", "sphere", metal, [2.3 * (i - 1), 1.15, 0], radius=1)
         s.shape(f"glass {i}", "sphere", glass, [2.3 * (i - 1), -1.15, 0], radius=1)
     s.camera([0, 0, 14], [0, 0, 0], 21, 1.5)
@@ -244,22 +356,38 @@ def furnace_rough():
 
 
 def furnace_closed():
-    s = Gltf("furnace_closed", "Inside a closed sphere that emits radiance 1 everywhere and reflects half of what it gets, diffusely, with a white ball, a "
-             "mirror and a glass ball that lose nothing: 1 + 1/2 + 1/4 + … = 2, every pixel within 0.3 %.")
+    s = Gltf(
+        "furnace_closed",
+        "Inside a closed sphere that emits radiance 1 everywhere and reflects half of what it gets,"
+        " diffusely, with a white ball, a mirror and a glass ball that lose nothing: 1 + 1/2 + 1/4 + … = 2,"
+        " every pixel within 0.3 %.",
+    )
     s.medium("glass", ior=1.5)
     wall = s.emitter("wall", 1)
     s.materials[wall]["doubleSided"] = True
     s.materials[wall]["extensions"]["ETD_optics"]["surface"]["reflectance"] = 0.5
     s.shape("wall", "sphere", wall, radius=4)
-    for x, kind in ((-1.2, s.surface("white", "lambertian", reflectance=1)),
-                    (0, s.surface("mirror", "conductor", reflectance=1)),
-                    (1.2, s.surface("glass", "dielectric", inside="glass"))):
+    for x, kind in (
+        (-1.2, s.surface("white", "lambertian", reflectance=1)),
+        (0, s.surface("mirror", "conductor", reflectance=1)),
+        (1.2, s.surface("glass", "dielectric", inside="glass")),
+    ):
         s.shape(s.materials[kind]["name"], "sphere", kind, [x, 0, 0], radius=0.5)
     s.camera([0, 0, 3.5], [0, 0, 0], 45, 1.5)
     return s
 
 
-SCENES = [example, cornell_box, spheres, lamps, materials, many_lights, furnace_smooth, furnace_rough, furnace_closed]
+SCENES = [
+    example,
+    cornell_box,
+    spheres,
+    lamps,
+    materials,
+    many_lights,
+    furnace_smooth,
+    furnace_rough,
+    furnace_closed,
+]
 
 README = """# Example scenes
 
@@ -276,8 +404,13 @@ def main():
     for make in SCENES:
         scene = make()
         scene.write(folder / f"{scene.name}.gltf")
-        text = textwrap.fill(f"**{scene.name}.gltf** {scene.expected}", 108, initial_indent="- ", subsequent_indent="  ",
-                             break_on_hyphens=False)
+        text = textwrap.fill(
+            f"**{scene.name}.gltf** {scene.expected}",
+            108,
+            initial_indent="- ",
+            subsequent_indent="  ",
+            break_on_hyphens=False,
+        )
         lines.append(text)
     (folder / "README.md").write_text(README + "\n".join(lines) + "\n", encoding="utf-8")
 

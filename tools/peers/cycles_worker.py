@@ -1,4 +1,5 @@
 """Cycles, in Blender's Python module. Diffuse surfaces and emissive meshes."""
+
 import os
 import tempfile
 import time
@@ -11,6 +12,7 @@ import worker
 def start(a):
     import bpy
     from mathutils import Matrix
+
     data = scene_data.load(a.scene)
     if data["spheres"] or data["environment"]:
         raise scene_data.Unsupported("spheres and environments")
@@ -27,8 +29,10 @@ def start(a):
         nodes.clear()
         output = nodes.new("ShaderNodeOutputMaterial")
         if max(m["emission"]) > 0:  # black behind: the front emits, the back does not
-            emission, black, side, mix = (nodes.new("ShaderNode" + name) for name in (
-                "Emission", "BsdfDiffuse", "NewGeometry", "MixShader"))
+            emission, black, side, mix = (
+                nodes.new("ShaderNode" + name)
+                for name in ("Emission", "BsdfDiffuse", "NewGeometry", "MixShader")
+            )
             emission.inputs["Color"].default_value = [*m["emission"], 1]
             black.inputs["Color"].default_value = [0, 0, 0, 1]
             links.new(side.outputs["Backfacing"], mix.inputs[0])
@@ -50,7 +54,11 @@ def start(a):
     scene.collection.objects.link(scene.camera)
 
     scene.render.engine = "CYCLES"
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = a.width, a.height, 100
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = (
+        a.width,
+        a.height,
+        100,
+    )
     scene.render.threads_mode, scene.render.threads = "FIXED", a.threads
     scene.render.use_persistent_data = True
     scene.render.image_settings.file_format, scene.render.image_settings.color_depth = "OPEN_EXR", "32"

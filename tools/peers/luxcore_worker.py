@@ -1,4 +1,5 @@
 """LuxCore: engine PATHCPU with the SOBOL sampler. Diffuse surfaces and emissive meshes (no spheres: it has none)."""
+
 import math
 import time
 
@@ -9,6 +10,7 @@ import worker
 
 def start(a):
     import pyluxcore as lux
+
     lux.Init()
     lux.SetLogHandler(lambda message: None)
     data = scene_data.load(a.scene)
@@ -36,8 +38,15 @@ def start(a):
     for i, (positions, triangles, m) in enumerate(data["meshes"]):
         if m["class"] != "lambertian":
             raise scene_data.Unsupported(f"the surface '{m['class']}'")
-        scene.DefineMesh(f"mesh{i}", [tuple(map(float, p)) for p in positions], [tuple(map(int, t)) for t in triangles],
-                         None, None, None, None)
+        scene.DefineMesh(
+            f"mesh{i}",
+            [tuple(map(float, p)) for p in positions],
+            [tuple(map(int, t)) for t in triangles],
+            None,
+            None,
+            None,
+            None,
+        )
         put(f"scene.materials.material{i}.type", "matte")
         put(f"scene.materials.material{i}.kd", *m["reflectance"])
         if max(m["emission"]) > 0:
@@ -49,11 +58,20 @@ def start(a):
 
     def render(samples, seed):
         settings = lux.Properties()
-        for key, value in (("renderengine.type", "PATHCPU"), ("sampler.type", "SOBOL"), ("renderengine.seed", seed),
-                           ("film.width", a.width), ("film.height", a.height), ("film.filter.type", "NONE"),
-                           ("native.threads.count", a.threads), ("batch.haltspp", samples), ("path.pathdepth.total", 64),
-                           ("path.pathdepth.diffuse", 64), ("path.clamping.variance.maxvalue", 0.0),
-                           ("film.imagepipelines.0.0.type", "NOP")):
+        for key, value in (
+            ("renderengine.type", "PATHCPU"),
+            ("sampler.type", "SOBOL"),
+            ("renderengine.seed", seed),
+            ("film.width", a.width),
+            ("film.height", a.height),
+            ("film.filter.type", "NONE"),
+            ("native.threads.count", a.threads),
+            ("batch.haltspp", samples),
+            ("path.pathdepth.total", 64),
+            ("path.pathdepth.diffuse", 64),
+            ("path.clamping.variance.maxvalue", 0.0),
+            ("film.imagepipelines.0.0.type", "NOP"),
+        ):
             settings.Set(lux.Property(key, value))
         session = lux.RenderSession(lux.RenderConfig(settings, scene))
         session.Start()

@@ -1,4 +1,5 @@
 """Mitsuba 3: variant llvm_ad_rgb, integrator `path` without a depth limit, one kernel for the whole image."""
+
 import math
 import os
 import tempfile
@@ -22,10 +23,18 @@ def bsdf(m):
             metal = {key: {"type": "rgb", "value": m[key]} for key in ("eta", "k")}
         else:
             metal = {"material": "none", "specular_reflectance": color}
-        rough = {"type": "roughconductor", "distribution": "ggx", "alpha": alpha} if alpha else {"type": "conductor"}
+        rough = (
+            {"type": "roughconductor", "distribution": "ggx", "alpha": alpha}
+            if alpha
+            else {"type": "conductor"}
+        )
         return {"type": "twosided", "bsdf": rough | metal}
     if kind == "dielectric":
-        rough = {"type": "roughdielectric", "distribution": "ggx", "alpha": alpha} if alpha else {"type": "dielectric"}
+        rough = (
+            {"type": "roughdielectric", "distribution": "ggx", "alpha": alpha}
+            if alpha
+            else {"type": "dielectric"}
+        )
         return rough | {"int_ior": m["ior"], "ext_ior": 1.0}
     raise scene_data.Unsupported(f"the surface '{kind}'")
 
@@ -45,12 +54,27 @@ def ply(mi, positions, triangles):
 def scene_dict(mi, data, width, height, sampler="independent"):
     camera = data["camera"]
     turned = camera["matrix"] @ np.diag([-1.0, 1, -1, 1])  # Mitsuba's cameras look along +z, +x to the left
-    scene = {"type": "scene", "integrator": {"type": "path", "max_depth": -1}, "sensor": {
-        "type": "perspective", "fov": math.degrees(camera["yfov"]), "fov_axis": "y",
-        "near_clip": 1e-3, "far_clip": 1e6, "to_world": mi.ScalarTransform4f(turned),
-        "sampler": {"type": sampler},
-        "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgb",
-                 "component_format": "float32", "rfilter": {"type": "box"}}}}
+    scene = {
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": -1},
+        "sensor": {
+            "type": "perspective",
+            "fov": math.degrees(camera["yfov"]),
+            "fov_axis": "y",
+            "near_clip": 1e-3,
+            "far_clip": 1e6,
+            "to_world": mi.ScalarTransform4f(turned),
+            "sampler": {"type": sampler},
+            "film": {
+                "type": "hdrfilm",
+                "width": width,
+                "height": height,
+                "pixel_format": "rgb",
+                "component_format": "float32",
+                "rfilter": {"type": "box"},
+            },
+        },
+    }
 
     def add(shape, m):
         shape["bsdf"] = bsdf(m)
@@ -78,6 +102,7 @@ def scene_dict(mi, data, width, height, sampler="independent"):
 def start(a):
     import drjit as dr
     import mitsuba as mi
+
     mi.set_variant("llvm_ad_rgb")
     dr.set_thread_count(a.threads)
     scene = mi.load_dict(scene_dict(mi, scene_data.load(a.scene), a.width, a.height))

@@ -1,4 +1,5 @@
 """Reads the part of the scene format that the reference scenes use into plain data, for the peers' workers."""
+
 import base64
 import json
 from pathlib import Path
@@ -42,7 +43,9 @@ def _material(gltf, material):
         if set(inside) - {"name", "class", "ior"}:
             raise Unsupported(f"the medium '{inside['name']}'")
         surface["ior"] = inside.get("ior", 1.0)
-    strength = material.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
+    strength = (
+        material.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
+    )
     surface["emission"] = [strength * x for x in material.get("emissiveFactor", [0, 0, 0])]
     return surface
 

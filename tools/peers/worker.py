@@ -1,4 +1,5 @@
 """The loop of a peer's worker: a scene is loaded once, then each request is rendered and timed."""
+
 import json
 import os
 import sys
