@@ -41,7 +41,8 @@ int inspect_command(const InspectOptions& options) {
     feature(f.vertex_attributes, "vertex attributes", "normals, tangents, texture coordinates or colors", "positions only");
     feature(f.textures, "textures", "materials use images", "no material uses an image");
     feature(f.normal_maps, "normal maps", "a material has one", "no material has one");
-    feature(f.media, "media", "surfaces separate media", "no medium named");
+    feature(f.interfaces, "interfaces", "surfaces separate media", "no medium named");
+    feature(f.media, "media", "a medium absorbs", "no medium absorbs");
     feature(f.straight, "straight passage", "a surface class lets light pass unscattered: shadow rays go through",
             "shadow rays end at the first surface");
 
@@ -55,7 +56,7 @@ int inspect_command(const InspectOptions& options) {
     for (const KernelReport& k : scene.kernels)
         fmt::print("    {:<18} {} bytes of SPIR-V, {}\n", k.name, k.spirv_bytes,
                    k.from_cache ? std::string("from the cache") : fmt::format("compiled in {:.2f} s", k.seconds));
-    fmt::print("memory     {:.1f} MiB on {} ({})\n", double(device->bytes_allocated) / (1 << 20), device->description.name,
+    fmt::print("memory     {:.1f} MiB on {} ({})\n", double(device->peak_bytes_allocated) / (1 << 20), device->description.name,
                device->description.driver);
     return 0;
 }

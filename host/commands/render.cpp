@@ -89,6 +89,7 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
             {"estimated_relative_error", std::isfinite(error) ? nlohmann::json(error) : nlohmann::json()},
             {"algorithm", "backward"}, {"schedule", schedule_name(renderer.schedule())},
             {"kernels", timings}, {"compiled_kernels", kernels}, {"compile_seconds", compile_seconds},
+            {"driver_compile_seconds", renderer.warm_up_seconds()},
             {"peak_device_memory_bytes", device.peak_bytes_allocated},
             {"light_power_lm", scene.power}, {"power_balance", balance}, {"non_finite_samples", c.non_finite}};
 }

@@ -21,4 +21,9 @@ void Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_
     commands.run(&timings);
 }
 
+void Renderer::FusedPipeline::warm_up(CommandList& commands) {
+    commands.dispatch(trace_paths, 1, {{"receiver", settings.receiver}});  // of an image without pixels
+    commands.run();
+}
+
 }  // namespace etendue

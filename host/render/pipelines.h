@@ -9,12 +9,15 @@ struct Renderer::Pipeline {
     virtual ~Pipeline() = default;
     // Runs passes [first, first + count).
     virtual void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) = 0;
+    // Dispatches every kernel on nothing: drivers finish compiling at the first dispatch.
+    virtual void warm_up(CommandList& commands) = 0;
     RenderSettings settings;
 };
 
 struct Renderer::FusedPipeline : Pipeline {
     FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film, const Buffer& counters);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
+    void warm_up(CommandList& commands) override;
     Kernel trace_paths;
     uint32_t groups = 1;
 };
@@ -22,6 +25,7 @@ struct Renderer::FusedPipeline : Pipeline {
 struct Renderer::WavefrontPipeline : Pipeline {
     WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film, const Buffer& counters);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
+    void warm_up(CommandList& commands) override;
     // One batch: `samples` samples of the pixels [first_pixel, first_pixel + pixels).
     void run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples,
                   KernelTimings& timings);

@@ -61,6 +61,9 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
         pipeline_ = std::make_unique<FusedPipeline>(device, scene, settings_, film_, counter_sums_);
     else
         pipeline_ = std::make_unique<WavefrontPipeline>(device, scene, settings_, film_, counter_sums_);
+    const auto start = std::chrono::steady_clock::now();
+    pipeline_->warm_up(commands_);
+    warm_up_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 Renderer::~Renderer() = default;

@@ -57,6 +57,7 @@ class Renderer {
     const RenderCounters& counters() const { return counters_; }
     const KernelTimings& timings() const { return timings_; }
     double seconds() const { return seconds_; }  // in render_passes
+    double warm_up_seconds() const { return warm_up_seconds_; }  // that the driver took to finish compiling
     Schedule schedule() const { return schedule_; }
 
     // Mean radiance as R, G, B, and its standard error as error.R, error.G, error.B.
@@ -82,7 +83,7 @@ class Renderer {
     KernelTimings timings_;
     RenderCounters counters_;
     uint64_t passes_ = 0;
-    double seconds_ = 0, last_pass_seconds_ = 0;
+    double seconds_ = 0, last_pass_seconds_ = 0, warm_up_seconds_ = 0;
 };
 
 // Root of the estimated relMSE: sqrt(mean(error² / (I² + 0.01 mean(I)²))) over pixels and channels of an image with an

@@ -82,4 +82,11 @@ void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first
     commands.run(&timings);
 }
 
+void Renderer::WavefrontPipeline::warm_up(CommandList& commands) {
+    commands.fill(queue_counts, 0);
+    for (const Kernel* kernel : {&emit_camera_rays, &find_hits, &scatter_paths, &find_occlusions, &accumulate_film})
+        if (!kernel->name().empty()) commands.dispatch(*kernel, 1);
+    commands.run();
+}
+
 }  // namespace etendue

@@ -62,10 +62,18 @@ void SceneCompiler::add_media() {
     for (const MediumDescription& medium : in_.media) added.push_back(add_record(Interface::medium, medium.medium));
     const auto refs = references(Interface::medium, added);
     for (size_t i = 0; i < refs.size(); ++i) resolver_.media[in_.media[i].name] = refs[i];
-    out_.features.media = out_.features.interfaces = !refs.empty();
+    if (refs.empty()) return;
+    out_.features.interfaces = true;
+    write_headers();
+    upload("MediumRecords", records_[Interface::medium].bytes());
+    const Buffer in = create_buffer(device_, refs, "MediumRefs");
+    const Buffer out(device_, refs.size() * 4, "MediumClarity");
+    run_once("kernels/measure_media.comp", uint32_t(refs.size()), {{"MediumRefs", &in}, {"MediumClarity", &out}},
+             {{"count", uint32_t(refs.size())}});
+    for (uint32_t is_clear : out.read_array<uint32_t>(refs.size())) out_.features.media |= !is_clear;
 }
 
-const ClassInfo& SceneCompiler::use_class(Interface interface, const ObjectDescription& object) {
+const ClassInfo& SceneCompiler::find_class(Interface interface, const ObjectDescription& object) {
     const ClassInfo* info = out_.registry->find(interface, object.class_name);
     if (!info) {
         std::string names;
@@ -73,6 +81,11 @@ const ClassInfo& SceneCompiler::use_class(Interface interface, const ObjectDescr
         fail_input("{}/class: there is no {} class {}; allowed: {}", message_place(in_, object.where),
                    interface_info(interface).name, object.class_name, names.empty() ? "none" : names);
     }
+    return *info;
+}
+
+const ClassInfo& SceneCompiler::use_class(Interface interface, const ObjectDescription& object) {
+    const ClassInfo* info = &find_class(interface, object);
     auto& used = out_.classes[interface];
     const auto place = std::lower_bound(used.begin(), used.end(), info, [](auto* a, auto* b) { return a->tag < b->tag; });
     if (place == used.end() || *place != info) used.insert(place, info);

@@ -26,6 +26,7 @@ class SceneCompiler {
     void add_class_files();
     void add_media();
     void write_headers();  // for the classes used and the records added so far
+    const ClassInfo& find_class(Interface interface, const ObjectDescription& object);
     const ClassInfo& use_class(Interface interface, const ObjectDescription& object);
     // A record; its reference can be looked up once all records of the interface are there.
     struct Added {
@@ -39,6 +40,7 @@ class SceneCompiler {
 
     // scene_materials.cpp
     void add_materials();
+    std::vector<bool> used_materials() const;
     void fill_emission(const EmissionDescription& emission, MaterialRecord& record);
     void ask_opacity();
     uint32_t medium_ref(const std::string& name, const std::string& where);

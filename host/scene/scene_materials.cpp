@@ -12,8 +12,18 @@ uint32_t SceneCompiler::medium_ref(const std::string& name, const std::string& w
     return found->second;
 }
 
+// Materials that no object has are checked like all others, but leave nothing to compile.
+std::vector<bool> SceneCompiler::used_materials() const {
+    std::vector<bool> used(in_.materials.size());
+    for (const MeshInstance& instance : in_.instances) used[in_.meshes[instance.mesh].material] = true;
+    for (const PlacedObject& shape : in_.shapes) used[shape.material] = true;
+    return used;
+}
+
 void SceneCompiler::add_materials() {
+    const std::vector<bool> used = used_materials();
     std::vector<Added> surfaces;
+    std::vector<uint32_t> places;  // of the surfaces' materials
     for (const MaterialDescription& m : in_.materials) {
         MaterialRecord record{};
         record.inside = medium_ref(m.inside, m.surface.where);
@@ -27,11 +37,17 @@ void SceneCompiler::add_materials() {
             out_.features.normal_maps = true;
         }
         if (m.emission) fill_emission(*m.emission, record);
-        surfaces.push_back(add_record(Interface::surface, m.surface));
+        record.surface = no_record;
+        if (used[materials_.size()]) {
+            surfaces.push_back(add_record(Interface::surface, m.surface));
+            places.push_back(uint32_t(materials_.size()));
+        } else {
+            fill_record(find_class(Interface::surface, m.surface), m.surface, {}, resolver_);
+        }
         materials_.push_back(record);
     }
     const auto refs = references(Interface::surface, surfaces);
-    for (size_t i = 0; i < refs.size(); ++i) materials_[i].surface = refs[i];
+    for (size_t i = 0; i < refs.size(); ++i) materials_[places[i]].surface = refs[i];
     out_.materials = materials_.size();
     ask_opacity();
 }

@@ -2,6 +2,7 @@
 //
 //   float    NAME_ior(R r)                          real refractive index
 //   Spectrum NAME_transmittance(R r, float distance)   part that is left after `distance` metres
+//   bool     NAME_is_clear(R r)                     all of it is left, whatever the distance
 //
 // No medium (NO_RECORD) is vacuum: ior 1, nothing absorbed.
 #include "lib/constants.glsl"
@@ -24,6 +25,16 @@ Spectrum medium_transmittance(uint ref, float distance) {
     Spectrum result = Spectrum(1);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_transmittance(name##_record(record_index(ref)), distance); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+bool medium_is_clear(uint ref) {
+    bool result = true;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_is_clear(name##_record(record_index(ref))); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }

@@ -9,3 +9,5 @@ float homogeneous_ior(Homogeneous r) { return r.ior; }
 Spectrum homogeneous_transmittance(Homogeneous r, float distance) {
     return exp(-spectrum_value(r.absorption) * distance);
 }
+
+bool homogeneous_is_clear(Homogeneous r) { return is_black(spectrum_value(r.absorption)); }
