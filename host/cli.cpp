@@ -21,8 +21,7 @@ const char* overview =
 // Arguments as text; CLI11's own conversions take NaN, hexadecimal and trailing characters for numbers.
 struct RenderArguments {
     std::optional<std::string> passes, seconds, error, size;
-    std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto",
-                schedule = "auto";
+    std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto", schedule = "auto";
 };
 
 uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most) {
@@ -103,7 +102,9 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
         ->option_text("auto|rgb");
     render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
         ->option_text("auto|off");
-    render->add_option("--schedule", arguments.schedule, "Whole paths in one kernel, or a kernel a stage (default: auto)")
+    render
+        ->add_option("--schedule", arguments.schedule,
+                     "Whole paths in one kernel, or a kernel a stage (default: auto)")
         ->option_text("auto|fused|wavefront");
     render->add_option("--seed", arguments.seed, "Seed of the random numbers (default: 0)")->option_text("N");
     render->add_option("--device", options.device, "Vulkan device (default: the best; see: etendue devices)")

@@ -9,13 +9,14 @@ namespace etendue {
 
 enum class ExitCode {
     done = 0,
-    target_failed = 1,   // a comparison or an accuracy target was missed
-    bad_input = 2,       // bad usage, or a bad scene
-    device_failed = 3,   // no usable device, or the device failed
-    interrupted = 130,   // stopped by the user; what was made so far is written
+    target_failed = 1,  // a comparison or an accuracy target was missed
+    bad_input = 2,      // bad usage, or a bad scene
+    device_failed = 3,  // no usable device, or the device failed
+    interrupted = 130,  // stopped by the user; what was made so far is written
 };
 
-// `what()` is the whole line to print. For scenes it reads "FILE: JSON POINTER: what is wrong; what is allowed".
+// `what()` is the whole line to print. For scenes it reads "FILE: JSON POINTER: what is wrong; what is
+// allowed".
 class Error : public std::runtime_error {
   public:
     Error(ExitCode code, const std::string& line) : std::runtime_error(line), code(code) {}

@@ -14,12 +14,17 @@ using namespace etendue;
 namespace {
 
 template <class... Cases>
-struct Overloaded : Cases... { using Cases::operator()...; };
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
 template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
 int run(int argc, char** argv) {
-    return std::visit(Overloaded{[](const TextAnswer& answer) { fmt::print("{}", answer.text); return 0; },
+    return std::visit(Overloaded{[](const TextAnswer& answer) {
+                                     fmt::print("{}", answer.text);
+                                     return 0;
+                                 },
                                  [](const RenderOptions& o) { return render_command(o); },
                                  [](const CompareOptions& o) { return compare_command(o); },
                                  [](const InspectOptions& o) { return inspect_command(o); },

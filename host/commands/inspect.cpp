@@ -18,17 +18,24 @@ int inspect_command(const InspectOptions& options) {
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
 
     fmt::print("scene      {}\n", options.scene.string());
-    fmt::print("geometry   {} triangles, {} instances, {} shapes; sphere of radius {:.6g} m around ({:.6g}, {:.6g}, {:.6g})\n",
-               scene.triangles, scene.instances, scene.shapes, scene.radius, scene.center.x, scene.center.y, scene.center.z);
-    fmt::print("hierarchy  built in {:.3f} s, cost {:.1f}, depth {}\n", scene.bvh_seconds, scene.bvh_cost, scene.bvh_depth);
+    fmt::print(
+        "geometry   {} triangles, {} instances, {} shapes; sphere of radius {:.6g} m around ({:.6g}, {:.6g}, "
+        "{:.6g})\n",
+        scene.triangles, scene.instances, scene.shapes, scene.radius, scene.center.x, scene.center.y,
+        scene.center.z);
+    fmt::print("hierarchy  built in {:.3f} s, cost {:.1f}, depth {}\n", scene.bvh_seconds, scene.bvh_cost,
+               scene.bvh_depth);
     fmt::print("materials  {}, textures {}\n", scene.materials, scene.textures);
-    fmt::print("lights     {} ({} at infinity), {:.6g} lm, selected by {}\n", scene.lights, scene.features.infinite_light_count,
-               scene.power, scene.features.light_tree ? "a tree" : "a list");
+    fmt::print("lights     {} ({} at infinity), {:.6g} lm, selected by {}\n", scene.lights,
+               scene.features.infinite_light_count, scene.power,
+               scene.features.light_tree ? "a tree" : "a list");
     fmt::print("receivers ");
-    for (const Receiver& receiver : scene.receivers) fmt::print(" {}", receiver.name.empty() ? "(unnamed)" : receiver.name);
+    for (const Receiver& receiver : scene.receivers)
+        fmt::print(" {}", receiver.name.empty() ? "(unnamed)" : receiver.name);
     fmt::print("\nclasses   ");
     for (const auto& [interface, classes] : scene.classes)
-        for (const ClassInfo* info : classes) fmt::print(" {}/{}", interface_info(interface).name, info->name);
+        for (const ClassInfo* info : classes)
+            fmt::print(" {}/{}", interface_info(interface).name, info->name);
 
     const Features& f = scene.features;
     fmt::print("\nfeatures\n");
@@ -38,12 +45,14 @@ int inspect_command(const InspectOptions& options) {
     feature(f.triangles, "triangles", "meshes", "no mesh");
     feature(f.shapes, "shapes", "analytic geometry", "no analytic geometry");
     feature(f.instances, "instances", "meshes placed several times", "every mesh is merged in world space");
-    feature(f.vertex_attributes, "vertex attributes", "normals, tangents, texture coordinates or colors", "positions only");
+    feature(f.vertex_attributes, "vertex attributes", "normals, tangents, texture coordinates or colors",
+            "positions only");
     feature(f.textures, "textures", "materials use images", "no material uses an image");
     feature(f.normal_maps, "normal maps", "a material has one", "no material has one");
     feature(f.interfaces, "interfaces", "surfaces separate media", "no medium named");
     feature(f.media, "media", "a medium absorbs", "no medium absorbs");
-    feature(f.straight, "straight passage", "a surface class lets light pass unscattered: shadow rays go through",
+    feature(f.straight, "straight passage",
+            "a surface class lets light pass unscattered: shadow rays go through",
             "shadow rays end at the first surface");
 
     if (!scene.receivers.empty()) {
@@ -54,10 +63,11 @@ int inspect_command(const InspectOptions& options) {
     }
     fmt::print("kernels\n");
     for (const KernelReport& k : scene.kernels)
-        fmt::print("    {:<18} {} bytes of SPIR-V, {}\n", k.name, k.spirv_bytes,
-                   k.from_cache ? std::string("from the cache") : fmt::format("compiled in {:.2f} s", k.seconds));
-    fmt::print("memory     {:.1f} MiB on {} ({})\n", double(device->peak_bytes_allocated) / (1 << 20), device->description.name,
-               device->description.driver);
+        fmt::print(
+            "    {:<18} {} bytes of SPIR-V, {}\n", k.name, k.spirv_bytes,
+            k.from_cache ? std::string("from the cache") : fmt::format("compiled in {:.2f} s", k.seconds));
+    fmt::print("memory     {:.1f} MiB on {} ({})\n", double(device->peak_bytes_allocated) / (1 << 20),
+               device->description.name, device->description.driver);
     return 0;
 }
 

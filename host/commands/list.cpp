@@ -15,10 +15,11 @@ std::string shown_default(const Parameter& p) {
 }
 
 void print_class(const ClassInfo& info) {
-    fmt::print("{} {}  (tag {}, {}, record {} of {} bytes)\n", interface_info(info.interface).name, info.name, info.tag,
-               info.file, info.record, info.stride);
+    fmt::print("{} {}  (tag {}, {}, record {} of {} bytes)\n", interface_info(info.interface).name, info.name,
+               info.tag, info.file, info.record, info.stride);
     std::string summary = "    " + info.summary;
-    for (size_t at = 0; (at = summary.find('\n', at)) != std::string::npos; at += 5) summary.replace(at, 1, "\n    ");
+    for (size_t at = 0; (at = summary.find('\n', at)) != std::string::npos; at += 5)
+        summary.replace(at, 1, "\n    ");
     fmt::print("{}\n", summary);
     for (const Parameter& p : info.parameters) {
         if (!p.from_scene) continue;
@@ -50,19 +51,21 @@ int classes_command(const ClassesOptions& options) {
                 found = true;
             }
     }
-    if (!options.name.empty() && !found) fail_input("classes {}: no such class; `etendue classes` lists them", options.name);
+    if (!options.name.empty() && !found)
+        fail_input("classes {}: no such class; `etendue classes` lists them", options.name);
     return 0;
 }
 
 int devices_command() {
     const auto devices = list_devices();
-    if (devices.empty()) fail_device("no Vulkan device found; install a driver (on Debian: mesa-vulkan-drivers)");
+    if (devices.empty())
+        fail_device("no Vulkan device found; install a driver (on Debian: mesa-vulkan-drivers)");
     const int chosen = default_device(devices);
     for (const DeviceDescription& d : devices) {
-        fmt::print("{} {}{}\n    {}, {}, Vulkan {}.{}, subgroups of {}, {:.1f} GiB, {:.0f} MiB a binding\n", d.index, d.name,
-                   int(d.index) == chosen ? " (default)" : "", d.type, d.driver, VK_API_VERSION_MAJOR(d.api_version),
-                   VK_API_VERSION_MINOR(d.api_version), d.subgroup_size, double(d.memory) / (1 << 30),
-                   double(d.max_buffer_range) / (1 << 20));
+        fmt::print("{} {}{}\n    {}, {}, Vulkan {}.{}, subgroups of {}, {:.1f} GiB, {:.0f} MiB a binding\n",
+                   d.index, d.name, int(d.index) == chosen ? " (default)" : "", d.type, d.driver,
+                   VK_API_VERSION_MAJOR(d.api_version), VK_API_VERSION_MINOR(d.api_version), d.subgroup_size,
+                   double(d.memory) / (1 << 30), double(d.max_buffer_range) / (1 << 20));
         if (!d.missing.empty()) fmt::print("    not usable: lacks {}\n", fmt::join(d.missing, ", "));
     }
     return 0;

@@ -18,21 +18,25 @@ namespace etendue {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
-constexpr double batch_seconds = 0.25;        // of work between two looks at clock, interrupt and progress
-constexpr double checkpoint_seconds = 30;     // between two checkpoints
-constexpr uint32_t aov_samples = 16;          // primary rays a pixel for --aovs
+constexpr double batch_seconds = 0.25;     // of work between two looks at clock, interrupt and progress
+constexpr double checkpoint_seconds = 30;  // between two checkpoints
+constexpr uint32_t aov_samples = 16;       // primary rays a pixel for --aovs
 
 const Receiver& choose_receiver(const Scene& scene, const RenderOptions& options) {
-    if (scene.receivers.empty()) fail_input("{}: the scene has no camera and no receiver", options.scene.string());
+    if (scene.receivers.empty())
+        fail_input("{}: the scene has no camera and no receiver", options.scene.string());
     if (options.receiver.empty()) return scene.receivers.front();
     std::string names;
     for (const Receiver& receiver : scene.receivers) {
         if (receiver.name == options.receiver) return receiver;
         names += (names.empty() ? "" : ", ") + receiver.name;
     }
-    fail_input("--receiver {}: no such receiver in {}; there are: {}", options.receiver, options.scene.string(), names);
+    fail_input("--receiver {}: no such receiver in {}; there are: {}", options.receiver,
+               options.scene.string(), names);
 }
 
 ImageSize image_size(const Receiver& receiver, const RenderOptions& options) {
@@ -47,51 +51,76 @@ uint64_t scene_hash(const Scene& scene) {
     for (const auto& [name, buffer] : scene.buffers)
         if (name != "LargeArrays")  // addresses, which differ from run to run
             hash = hash_bytes(buffer.read_array<std::byte>(buffer.bytes()), hash);
-    for (const auto& [name, text] : scene.sources.generated) hash = hash_bytes(std::as_bytes(std::span(text)), hash);
+    for (const auto& [name, text] : scene.sources.generated)
+        hash = hash_bytes(std::as_bytes(std::span(text)), hash);
     return hash;
 }
 
 // What a checkpoint must agree on to be gone on from.
 nlohmann::json checkpoint_identity(const RenderOptions& options, const Scene& scene, const ImageSize& size,
                                    const Receiver& receiver, const Device& device) {
-    return {{"version", ETENDUE_VERSION}, {"scene", fmt::format("{:016x}", scene_hash(scene))},
-            {"size", fmt::format("{}x{}", size.width, size.height)}, {"receiver", receiver.name},
-            {"seed", options.seed}, {"device", device.description.name + " " + device.description.driver}};
+    return {{"version", ETENDUE_VERSION},
+            {"scene", fmt::format("{:016x}", scene_hash(scene))},
+            {"size", fmt::format("{}x{}", size.width, size.height)},
+            {"receiver", receiver.name},
+            {"seed", options.seed},
+            {"device", device.description.name + " " + device.description.driver}};
 }
 
-nlohmann::json stats(const RenderOptions& options, const Device& device, const Scene& scene, const Renderer& renderer,
-                     double error, double setup_seconds) {
+nlohmann::json stats(const RenderOptions& options, const Device& device, const Scene& scene,
+                     const Renderer& renderer, double error, double setup_seconds) {
     nlohmann::json kernels = nlohmann::json::array(), timings = nlohmann::json::object();
     double compile_seconds = 0;
     for (const KernelReport& k : scene.kernels) {
-        kernels.push_back({{"name", k.name}, {"from_cache", k.from_cache}, {"seconds", k.seconds}, {"spirv_bytes", k.spirv_bytes}});
+        kernels.push_back({{"name", k.name},
+                           {"from_cache", k.from_cache},
+                           {"seconds", k.seconds},
+                           {"spirv_bytes", k.spirv_bytes}});
         compile_seconds += k.seconds;
     }
     const RenderCounters& c = renderer.counters();
     for (const auto& [name, t] : renderer.timings())
-        timings[name] = {{"seconds", t.seconds}, {"dispatches", t.dispatches},
-                         {"rays_per_second", t.seconds > 0 ? double(c.rays + c.shadow_rays) / t.seconds : 0.0}};
-    // Backward rays carry importance: 1 a path. What leaves the scene is received by its surroundings; what is neither received
-    // nor lost was absorbed.
+        timings[name] = {
+            {"seconds", t.seconds},
+            {"dispatches", t.dispatches},
+            {"rays_per_second", t.seconds > 0 ? double(c.rays + c.shadow_rays) / t.seconds : 0.0}};
+    // Backward rays carry importance: 1 a path. What leaves the scene is received by its surroundings; what
+    // is neither received nor lost was absorbed.
     const double paths = double(renderer.passes()) * options.size->width * options.size->height;
-    nlohmann::json balance = {{"unit", "share of the importance that the receiver sent out"},
-                              {"emitted", 1.0},
-                              {"received", c.escaped / paths},
-                              {"absorbed", 1.0 - (c.escaped + c.depth_limit_lost) / paths},
-                              {"lost", {{"depth_limit", c.depth_limit_lost / paths},
-                                        {"non_finite", double(c.non_finite) / paths}}}};
-    return {{"scene", options.scene.string()}, {"command", options.command_line}, {"version", ETENDUE_VERSION},
-            {"device", device.description.name}, {"driver", device.description.driver}, {"seed", options.seed},
-            {"width", options.size->width}, {"height", options.size->height},
-            {"passes", renderer.passes()}, {"backward_rays", c.rays}, {"shadow_rays", c.shadow_rays}, {"forward_rays", 0},
-            {"seconds", renderer.seconds()}, {"setup_seconds", setup_seconds},
-            {"rays_per_second", renderer.seconds() > 0 ? double(c.rays + c.shadow_rays) / renderer.seconds() : 0.0},
+    nlohmann::json balance = {
+        {"unit", "share of the importance that the receiver sent out"},
+        {"emitted", 1.0},
+        {"received", c.escaped / paths},
+        {"absorbed", 1.0 - (c.escaped + c.depth_limit_lost) / paths},
+        {"lost",
+         {{"depth_limit", c.depth_limit_lost / paths}, {"non_finite", double(c.non_finite) / paths}}}};
+    return {{"scene", options.scene.string()},
+            {"command", options.command_line},
+            {"version", ETENDUE_VERSION},
+            {"device", device.description.name},
+            {"driver", device.description.driver},
+            {"seed", options.seed},
+            {"width", options.size->width},
+            {"height", options.size->height},
+            {"passes", renderer.passes()},
+            {"backward_rays", c.rays},
+            {"shadow_rays", c.shadow_rays},
+            {"forward_rays", 0},
+            {"seconds", renderer.seconds()},
+            {"setup_seconds", setup_seconds},
+            {"rays_per_second",
+             renderer.seconds() > 0 ? double(c.rays + c.shadow_rays) / renderer.seconds() : 0.0},
             {"estimated_relative_error", std::isfinite(error) ? nlohmann::json(error) : nlohmann::json()},
-            {"algorithm", "backward"}, {"schedule", schedule_name(renderer.schedule())},
-            {"kernels", timings}, {"compiled_kernels", kernels}, {"compile_seconds", compile_seconds},
+            {"algorithm", "backward"},
+            {"schedule", schedule_name(renderer.schedule())},
+            {"kernels", timings},
+            {"compiled_kernels", kernels},
+            {"compile_seconds", compile_seconds},
             {"driver_compile_seconds", renderer.warm_up_seconds()},
             {"peak_device_memory_bytes", device.peak_bytes_allocated},
-            {"light_power_lm", scene.power}, {"power_balance", balance}, {"non_finite_samples", c.non_finite}};
+            {"light_power_lm", scene.power},
+            {"power_balance", balance},
+            {"non_finite_samples", c.non_finite}};
 }
 
 void write_stats(const std::filesystem::path& path, const nlohmann::json& json) {
@@ -99,7 +128,8 @@ void write_stats(const std::filesystem::path& path, const nlohmann::json& json) 
     write_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
-void save_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity, const Renderer& renderer) {
+void save_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity,
+                     const Renderer& renderer) {
     FilmState film = renderer.state();
     Checkpoint checkpoint;
     checkpoint.identity = identity;
@@ -138,7 +168,9 @@ int render_command(const RenderOptions& given) {
     Scene scene = compile_scene(*device, description, scene_options);
     for (const std::string& warning : scene.warnings) show_note(progress, "warning: " + warning);
     const Receiver& receiver = choose_receiver(scene, options);
-    if (scene.lights == 0) show_note(progress, fmt::format("warning: {}: the scene has no light: the image is black", options.scene.string()));
+    if (scene.lights == 0)
+        show_note(progress, fmt::format("warning: {}: the scene has no light: the image is black",
+                                        options.scene.string()));
     options.size = image_size(receiver, options);
 
     RenderSettings settings;
@@ -154,7 +186,8 @@ int render_command(const RenderOptions& given) {
     const double setup_seconds = seconds_since(start);
 
     RenderStatus status;
-    status.passes_goal = options.passes, status.seconds_goal = options.seconds, status.error_goal = options.error;
+    status.passes_goal = options.passes, status.seconds_goal = options.seconds,
+    status.error_goal = options.error;
     status.passes_before = renderer.passes();
     const uint64_t rays_before = renderer.counters().rays + renderer.counters().shadow_rays;
     const auto render_start = Clock::now();
@@ -190,18 +223,25 @@ int render_command(const RenderOptions& given) {
     Image image = renderer.develop();
     const double error = estimated_relative_error(image);
     if (options.aovs) renderer.add_aovs(image, aov_samples);
-    image.attributes = {{"scene", options.scene.string()}, {"command", options.command_line},
-                        {"seed", double(options.seed)}, {"passes", double(renderer.passes())},
+    image.attributes = {{"scene", options.scene.string()},
+                        {"command", options.command_line},
+                        {"seed", double(options.seed)},
+                        {"passes", double(renderer.passes())},
                         {"rays", double(renderer.counters().rays + renderer.counters().shadow_rays)},
-                        {"seconds", renderer.seconds()}, {"device", device->description.name},
-                        {"driver", device->description.driver}, {"version", std::string(ETENDUE_VERSION)}};
+                        {"seconds", renderer.seconds()},
+                        {"device", device->description.name},
+                        {"driver", device->description.driver},
+                        {"version", std::string(ETENDUE_VERSION)}};
     if (!options.aovs) remove_channels(image, "error.");
     write_exr(options.output, image);
-    if (!options.stats.empty()) write_stats(options.stats, stats(options, *device, scene, renderer, error, setup_seconds));
+    if (!options.stats.empty())
+        write_stats(options.stats, stats(options, *device, scene, renderer, error, setup_seconds));
     if (renderer.counters().non_finite)
-        show_note(progress, fmt::format("warning: {} samples were not finite and count as black", renderer.counters().non_finite));
+        show_note(progress, fmt::format("warning: {} samples were not finite and count as black",
+                                        renderer.counters().non_finite));
     if (renderer.counters().depth_limit)
-        show_note(progress, fmt::format("warning: {} paths were cut at the depth limit", renderer.counters().depth_limit));
+        show_note(progress, fmt::format("warning: {} paths were cut at the depth limit",
+                                        renderer.counters().depth_limit));
     return int(interrupted() && !done ? ExitCode::interrupted : ExitCode::done);
 }
 

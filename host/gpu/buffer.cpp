@@ -17,13 +17,14 @@ int find_memory_type(const Device& device, uint32_t allowed, VkMemoryPropertyFla
     return -1;
 }
 
-// Host-visible device memory is used for everything only where all device memory is host-visible (CPU, integrated
-// GPUs, resizable BAR); a small visible window would run out.
+// Host-visible device memory is used for everything only where all device memory is host-visible (CPU,
+// integrated GPUs, resizable BAR); a small visible window would run out.
 bool all_memory_visible(const Device& device) {
     const auto& p = device.memory_properties;
     for (uint32_t i = 0; i < p.memoryTypeCount; ++i) {
         const auto flags = p.memoryTypes[i].propertyFlags;
-        const bool both = (flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) && (flags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT);
+        const bool both =
+            (flags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) && (flags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT);
         if (both && p.memoryHeaps[p.memoryTypes[i].heapIndex].size >= device.description.memory) return true;
     }
     return false;
@@ -36,7 +37,8 @@ struct Allocation {
     bool visible = false;
 };
 
-Allocation allocate(Device& device, uint64_t bytes, VkBufferUsageFlags usage, bool host_visible, const std::string& name) {
+Allocation allocate(Device& device, uint64_t bytes, VkBufferUsageFlags usage, bool host_visible,
+                    const std::string& name) {
     Allocation result;
     VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
     info.size = bytes;
@@ -44,14 +46,16 @@ Allocation allocate(Device& device, uint64_t bytes, VkBufferUsageFlags usage, bo
     check(vkCreateBuffer(device.handle, &info, nullptr, &result.buffer), "vkCreateBuffer");
     VkMemoryRequirements needs;
     vkGetBufferMemoryRequirements(device.handle, result.buffer, &needs);
-    const VkMemoryPropertyFlags visible = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+    const VkMemoryPropertyFlags visible =
+        VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
     VkMemoryPropertyFlags wanted = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
     if (host_visible) wanted = visible;
     if (!host_visible && all_memory_visible(device)) wanted |= visible;
     int type = find_memory_type(device, needs.memoryTypeBits, wanted);
     if (type < 0) type = find_memory_type(device, needs.memoryTypeBits, 0);
     VkMemoryAllocateFlagsInfo flags{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO};
-    if (usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT) flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+    if (usage & VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT)
+        flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
     VkMemoryAllocateInfo allocation{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, &flags};
     allocation.allocationSize = needs.size;
     allocation.memoryTypeIndex = uint32_t(type);
@@ -65,7 +69,8 @@ Allocation allocate(Device& device, uint64_t bytes, VkBufferUsageFlags usage, bo
     }
     check(vkBindBufferMemory(device.handle, result.buffer, result.memory, 0), "vkBindBufferMemory");
     result.bytes = needs.size;
-    result.visible = device.memory_properties.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
+    result.visible =
+        device.memory_properties.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT;
     return result;
 }
 
@@ -82,7 +87,8 @@ void through_staging(Device& device, uint64_t bytes, Copy&& copy) {
     vkFreeMemory(device.handle, staging.memory, nullptr);
 }
 
-void copy_buffer(Device& device, VkBuffer from, uint64_t from_offset, VkBuffer to, uint64_t to_offset, uint64_t bytes) {
+void copy_buffer(Device& device, VkBuffer from, uint64_t from_offset, VkBuffer to, uint64_t to_offset,
+                 uint64_t bytes) {
     VkCommandBuffer commands = begin_commands(device);
     const VkBufferCopy region{from_offset, to_offset, bytes};
     vkCmdCopyBuffer(commands, from, to, 1, &region);
@@ -102,7 +108,8 @@ Buffer::Buffer(Device& device, uint64_t bytes, std::string name)
     allocated_ = made.bytes;
     device.bytes_allocated += allocated_;
     device.peak_bytes_allocated = std::max(device.peak_bytes_allocated, device.bytes_allocated);
-    if (made.visible) check(vkMapMemory(device.handle, memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
+    if (made.visible)
+        check(vkMapMemory(device.handle, memory_, 0, VK_WHOLE_SIZE, 0, &mapped_), "vkMapMemory");
     set_debug_name(device, VK_OBJECT_TYPE_BUFFER, uint64_t(buffer_), name_);
 }
 

@@ -11,14 +11,18 @@
 
 namespace etendue {
 
-// Usable as storage buffer, by address, as transfer source and target and for indirect dispatch. Owns its memory;
-// movable. Must not outlive its device.
+// Usable as storage buffer, by address, as transfer source and target and for indirect dispatch. Owns its
+// memory; movable. Must not outlive its device.
 class Buffer {
   public:
     Buffer() = default;
-    Buffer(Device& device, uint64_t bytes, std::string name);  // contents undefined; at least 16 bytes are allocated
+    Buffer(Device& device, uint64_t bytes,
+           std::string name);  // contents undefined; at least 16 bytes are allocated
     Buffer(Buffer&& other) noexcept { swap(other); }
-    Buffer& operator=(Buffer&& other) noexcept { swap(other); return *this; }
+    Buffer& operator=(Buffer&& other) noexcept {
+        swap(other);
+        return *this;
+    }
     ~Buffer();
 
     void write(const void* data, uint64_t bytes, uint64_t offset = 0);
@@ -44,7 +48,8 @@ class Buffer {
     VkBuffer buffer_ = VK_NULL_HANDLE;
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
     uint64_t bytes_ = 0, allocated_ = 0;
-    void* mapped_ = nullptr;  // null where the host cannot see the memory: then transfers go through a staging buffer
+    void* mapped_ =
+        nullptr;  // null where the host cannot see the memory: then transfers go through a staging buffer
     std::string name_;
 };
 
@@ -52,7 +57,8 @@ template <class T>
 Buffer create_buffer(Device& device, std::span<const T> data, std::string name) {
     Buffer buffer(device, data.size_bytes(), std::move(name));
     const uint32_t zeros[4] = {};
-    buffer.write(zeros, sizeof zeros, buffer.bytes() - sizeof zeros);  // behind the data, up to the rounded size
+    buffer.write(zeros, sizeof zeros,
+                 buffer.bytes() - sizeof zeros);  // behind the data, up to the rounded size
     if (!data.empty()) buffer.write(data.data(), data.size_bytes());
     return buffer;
 }
@@ -60,7 +66,6 @@ template <class T>
 Buffer create_buffer(Device& device, const std::vector<T>& data, std::string name) {
     return create_buffer(device, std::span<const T>(data), std::move(name));
 }
-
 
 VkCommandBuffer begin_commands(Device& device);
 void submit_and_wait(Device& device, VkCommandBuffer commands);  // frees the command buffer

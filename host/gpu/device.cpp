@@ -14,7 +14,8 @@ constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 // Everything that the shaders rely on, asked for in one chain and enabled by the same chain.
 struct Features {
     VkPhysicalDeviceFeatures2 core{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-    VkPhysicalDeviceScalarBlockLayoutFeatures scalar{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES};
+    VkPhysicalDeviceScalarBlockLayoutFeatures scalar{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES};
     VkPhysicalDeviceBufferDeviceAddressFeatures address{
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_BUFFER_DEVICE_ADDRESS_FEATURES};
     Features() {
@@ -26,7 +27,8 @@ struct Features {
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_validation_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                      VkDebugUtilsMessageTypeFlagsEXT,
-                                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* device) {
+                                                     const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                     void* device) {
     static_cast<Device*>(device)->validation_messages.emplace_back(data->pMessage);
     return VK_FALSE;
 }
@@ -36,7 +38,8 @@ bool has_layer(const char* name) {
     vkEnumerateInstanceLayerProperties(&count, nullptr);
     std::vector<VkLayerProperties> layers(count);
     vkEnumerateInstanceLayerProperties(&count, layers.data());
-    return std::any_of(layers.begin(), layers.end(), [&](auto& l) { return !std::strcmp(l.layerName, name); });
+    return std::any_of(layers.begin(), layers.end(),
+                       [&](auto& l) { return !std::strcmp(l.layerName, name); });
 }
 
 bool has_instance_extension(const char* name) {
@@ -92,20 +95,28 @@ int compute_family(VkPhysicalDevice device, uint32_t* timestamp_bits) {
 
 const char* type_name(VkPhysicalDeviceType type) {
     switch (type) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
-        case VK_PHYSICAL_DEVICE_TYPE_CPU: return "CPU";
-        default: return "other";
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            return "discrete GPU";
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            return "integrated GPU";
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            return "virtual GPU";
+        case VK_PHYSICAL_DEVICE_TYPE_CPU:
+            return "CPU";
+        default:
+            return "other";
     }
 }
 
 DeviceDescription describe(VkPhysicalDevice device, uint32_t index) {
     DeviceDescription d;
     d.index = index;
-    VkPhysicalDeviceMaintenance3Properties maintenance{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
-    VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, &maintenance};
-    VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, &driver};
+    VkPhysicalDeviceMaintenance3Properties maintenance{
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
+    VkPhysicalDeviceDriverProperties driver{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
+                                            &maintenance};
+    VkPhysicalDeviceSubgroupProperties subgroup{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
+                                                &driver};
     VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &subgroup};
     vkGetPhysicalDeviceProperties2(device, &properties);
     const VkPhysicalDeviceProperties& p = properties.properties;
@@ -147,17 +158,21 @@ std::vector<DeviceDescription> describe_all(VkInstance instance) {
 }
 
 uint32_t choose(const std::vector<DeviceDescription>& devices, const std::string& selector) {
-    if (devices.empty()) fail_device("no Vulkan device found; install a driver (on Debian: mesa-vulkan-drivers)");
+    if (devices.empty())
+        fail_device("no Vulkan device found; install a driver (on Debian: mesa-vulkan-drivers)");
     std::string known;
-    for (const auto& d : devices) known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", d.index, d.name);
+    for (const auto& d : devices)
+        known += fmt::format("{}{} ({})", known.empty() ? "" : ", ", d.index, d.name);
     int chosen = -1;
     if (selector.empty()) {
         chosen = default_device(devices);
         if (chosen < 0)
-            fail_device("no usable Vulkan device: {} lacks {}", devices[0].name, fmt::join(devices[0].missing, ", "));
+            fail_device("no usable Vulkan device: {} lacks {}", devices[0].name,
+                        fmt::join(devices[0].missing, ", "));
     } else {
         for (const auto& d : devices)
-            if (selector == std::to_string(d.index) || (chosen < 0 && d.name.find(selector) != std::string::npos))
+            if (selector == std::to_string(d.index) ||
+                (chosen < 0 && d.name.find(selector) != std::string::npos))
                 chosen = int(d.index);
         if (chosen < 0) fail_device("--device {}: no such device; there are: {}", selector, known);
         if (!devices[chosen].missing.empty())
@@ -171,11 +186,16 @@ uint32_t choose(const std::vector<DeviceDescription>& devices, const std::string
 
 void check(VkResult result, const char* call) {
     switch (result) {
-        case VK_SUCCESS: return;
-        case VK_ERROR_OUT_OF_HOST_MEMORY: fail_device("out of memory ({})", call);
-        case VK_ERROR_OUT_OF_DEVICE_MEMORY: fail_device("out of device memory ({})", call);
-        case VK_ERROR_DEVICE_LOST: fail_device("the device was lost ({})", call);
-        default: fail_device("{} failed with VkResult {}", call, int(result));
+        case VK_SUCCESS:
+            return;
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+            fail_device("out of memory ({})", call);
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+            fail_device("out of device memory ({})", call);
+        case VK_ERROR_DEVICE_LOST:
+            fail_device("the device was lost ({})", call);
+        default:
+            fail_device("{} failed with VkResult {}", call, int(result));
     }
 }
 
@@ -201,8 +221,8 @@ std::unique_ptr<Device> create_device(const DeviceOptions& options) {
     device->instance = create_instance(options.validation, device->debug_names);
     if (options.validation) {
         VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
-        info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
-                               VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+        info.messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
         info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
         info.pfnUserCallback = on_validation_message;
         info.pUserData = device.get();

@@ -12,19 +12,20 @@ namespace etendue {
 // What `etendue devices` prints of one physical device.
 struct DeviceDescription {
     uint32_t index = 0;
-    std::string name, driver;         // driver: name, version and information as the driver gives them
-    std::string type;                 // discrete GPU, integrated GPU, virtual GPU, CPU, other
+    std::string name, driver;  // driver: name, version and information as the driver gives them
+    std::string type;          // discrete GPU, integrated GPU, virtual GPU, CPU, other
     uint32_t api_version = 0;
     uint32_t subgroup_size = 0;
-    uint64_t max_buffer_range = 0;    // bytes of one storage buffer binding
-    uint64_t max_allocation = 0;      // bytes
-    uint64_t memory = 0;              // bytes of the largest device-local heap
-    std::vector<std::string> missing; // what étendue needs and the device lacks; empty = usable
+    uint64_t max_buffer_range = 0;     // bytes of one storage buffer binding
+    uint64_t max_allocation = 0;       // bytes
+    uint64_t memory = 0;               // bytes of the largest device-local heap
+    std::vector<std::string> missing;  // what étendue needs and the device lacks; empty = usable
 };
 
 struct DeviceOptions {
-    std::string selector;     // index, or part of the name; empty = the default device
-    bool validation = false;  // Khronos validation layer; its messages are collected in Device::validation_messages
+    std::string selector;  // index, or part of the name; empty = the default device
+    bool validation =
+        false;  // Khronos validation layer; its messages are collected in Device::validation_messages
 };
 
 struct Device {
@@ -48,9 +49,9 @@ struct Device {
     ~Device();
 };
 
-// The default is the first discrete GPU, then an integrated or virtual one, then a CPU implementation; of equals
-// the first that Vulkan lists. Errors (exit code 3): no Vulkan, no device, none usable (with what it lacks),
-// selector that matches none (lists the devices).
+// The default is the first discrete GPU, then an integrated or virtual one, then a CPU implementation; of
+// equals the first that Vulkan lists. Errors (exit code 3): no Vulkan, no device, none usable (with what it
+// lacks), selector that matches none (lists the devices).
 std::unique_ptr<Device> create_device(const DeviceOptions& options = {});
 
 std::vector<DeviceDescription> list_devices();

@@ -19,7 +19,8 @@ Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& 
     std::map<uint32_t, const Buffer*> bound;  // several blocks may be views of one binding
     for (const BlockLayout& block : layout_.blocks) {
         const auto found = buffers.find(block.name);
-        if (found == buffers.end()) fail_device("kernel {} reads buffer {}, which the host does not bind", name_, block.name);
+        if (found == buffers.end())
+            fail_device("kernel {} reads buffer {}, which the host does not bind", name_, block.name);
         if (found->second->bytes() > device.description.max_buffer_range)
             fail_device("{} needs {:.0f} MiB in one binding; this device allows {:.0f} MiB", block.name,
                         double(found->second->bytes()) / 1048576.0,
@@ -29,11 +30,13 @@ Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& 
 
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (const auto& [binding, buffer] : bound)
-        bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+        bindings.push_back(
+            {binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     set_info.bindingCount = uint32_t(bindings.size());
     set_info.pBindings = bindings.data();
-    check(vkCreateDescriptorSetLayout(device.handle, &set_info, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
+    check(vkCreateDescriptorSetLayout(device.handle, &set_info, nullptr, &set_layout_),
+          "vkCreateDescriptorSetLayout");
 
     const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, (layout_.push_constant_size + 3) / 4 * 4};
     VkPipelineLayoutCreateInfo layout_info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
@@ -41,7 +44,8 @@ Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& 
     layout_info.pSetLayouts = &set_layout_;
     layout_info.pushConstantRangeCount = range.size ? 1 : 0;
     layout_info.pPushConstantRanges = &range;
-    check(vkCreatePipelineLayout(device.handle, &layout_info, nullptr, &pipeline_layout_), "vkCreatePipelineLayout");
+    check(vkCreatePipelineLayout(device.handle, &layout_info, nullptr, &pipeline_layout_),
+          "vkCreatePipelineLayout");
 
     VkShaderModuleCreateInfo module_info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     module_info.codeSize = shader.spirv.size() * 4;
@@ -54,12 +58,14 @@ Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& 
     info.stage.module = module;
     info.stage.pName = "main";
     info.layout = pipeline_layout_;
-    const VkResult made = vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
+    const VkResult made =
+        vkCreateComputePipelines(device.handle, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
     vkDestroyShaderModule(device.handle, module, nullptr);
     check(made, "vkCreateComputePipelines");
     set_debug_name(device, VK_OBJECT_TYPE_PIPELINE, uint64_t(pipeline_), name_);
 
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max<uint32_t>(1, uint32_t(bound.size()))};
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                                    std::max<uint32_t>(1, uint32_t(bound.size()))};
     VkDescriptorPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     pool_info.maxSets = 1;
     pool_info.poolSizeCount = 1;
@@ -124,32 +130,35 @@ void CommandList::begin() {
 void CommandList::barrier() {
     VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     memory.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
-    memory.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT |
-                           VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
+    memory.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                           VK_ACCESS_TRANSFER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
     const auto stages = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
-    vkCmdPipelineBarrier(commands_, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1, &memory, 0, nullptr, 0,
-                         nullptr);
+    vkCmdPipelineBarrier(commands_, stages, stages | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, 0, 1, &memory, 0,
+                         nullptr, 0, nullptr);
 }
 
 void CommandList::stamp(VkPipelineStageFlagBits stage) {
     if (!queries_ || timed_.size() > max_timed_dispatches) return;
     const uint32_t pair = uint32_t(timed_.size()) - 1;
-    vkCmdWriteTimestamp(commands_, stage, queries_, 2 * pair + (stage == VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT));
+    vkCmdWriteTimestamp(commands_, stage, queries_,
+                        2 * pair + (stage == VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT));
 }
 
 void CommandList::prepare(const Kernel& kernel, std::initializer_list<PushValue> values) {
     begin();
     vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline_);
-    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline_layout_, 0, 1, &kernel.set_, 0,
-                            nullptr);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline_layout_, 0, 1,
+                            &kernel.set_, 0, nullptr);
     if (const uint32_t size = (kernel.layout_.push_constant_size + 3) / 4 * 4) {
         std::vector<uint32_t> words(size / 4, 0u);
         for (const PushValue& value : values) {
             const auto& members = kernel.layout_.push_constants;
-            const auto member = std::find_if(members.begin(), members.end(), [&](auto& m) { return m.name == value.name; });
+            const auto member =
+                std::find_if(members.begin(), members.end(), [&](auto& m) { return m.name == value.name; });
             if (member != members.end()) words[member->offset / 4] = value.bits;
         }
-        vkCmdPushConstants(commands_, kernel.pipeline_layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, size, words.data());
+        vkCmdPushConstants(commands_, kernel.pipeline_layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, size,
+                           words.data());
     }
     timed_.push_back(kernel.name_);
     stamp(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT);
@@ -189,7 +198,8 @@ void CommandList::run(KernelTimings* timings) {
     for (uint32_t i = 0; i < timed_.size(); ++i) {
         KernelTiming& timing = (*timings)[timed_[i]];
         ++timing.dispatches;
-        if (i < count && queries_) timing.seconds += double(ticks[2 * i + 1] - ticks[2 * i]) * device_.timestamp_period * 1e-9;
+        if (i < count && queries_)
+            timing.seconds += double(ticks[2 * i + 1] - ticks[2 * i]) * device_.timestamp_period * 1e-9;
     }
 }
 

@@ -1,5 +1,5 @@
-// Compute kernels: pipelines whose bindings, push constants and workgroup size come from their SPIR-V, and lists of
-// dispatches that are timed by kernel name.
+// Compute kernels: pipelines whose bindings, push constants and workgroup size come from their SPIR-V, and
+// lists of dispatches that are timed by kernel name.
 #pragma once
 #include <bit>
 #include <initializer_list>
@@ -28,15 +28,21 @@ struct PushValue {
 class Kernel {
   public:
     Kernel() = default;
-    // Fails with a clear line when `buffers` lacks one that the shader reads, or one is too large for a binding.
+    // Fails with a clear line when `buffers` lacks one that the shader reads, or one is too large for a
+    // binding.
     Kernel(Device& device, const CompiledShader& shader, const BufferTable& buffers);
     Kernel(Kernel&& other) noexcept { swap(other); }
-    Kernel& operator=(Kernel&& other) noexcept { swap(other); return *this; }
+    Kernel& operator=(Kernel&& other) noexcept {
+        swap(other);
+        return *this;
+    }
     ~Kernel();
 
     const std::string& name() const { return name_; }
     const ShaderLayout& layout() const { return layout_; }
-    uint32_t group_size() const { return layout_.local_size[0] * layout_.local_size[1] * layout_.local_size[2]; }
+    uint32_t group_size() const {
+        return layout_.local_size[0] * layout_.local_size[1] * layout_.local_size[2];
+    }
 
   private:
     friend class CommandList;

@@ -43,7 +43,9 @@ Module read_module(const Spirv& spirv) {
         const auto op = spv::Op(word[0] & 0xFFFF);
         if (count == 0) fail_device("a compiled shader is not valid SPIR-V");
         switch (op) {
-            case spv::OpName: m.names[word[1]] = literal_string(word + 2, count - 2); break;
+            case spv::OpName:
+                m.names[word[1]] = literal_string(word + 2, count - 2);
+                break;
             case spv::OpMemberName: {
                 auto& names = m.member_names[word[1]];
                 names.resize(std::max<size_t>(names.size(), word[2] + 1));
@@ -68,10 +70,17 @@ Module read_module(const Spirv& spirv) {
             case spv::OpTypeArray:
             case spv::OpTypeRuntimeArray:
             case spv::OpTypeStruct:
-            case spv::OpTypePointer: m.types[word[1]] = {op, {word + 2, word + count}}; break;
-            case spv::OpConstant: m.constants[word[2]] = word[3]; break;
-            case spv::OpVariable: m.variables.push_back({word[2], word[1], spv::StorageClass(word[3])}); break;
-            default: break;
+            case spv::OpTypePointer:
+                m.types[word[1]] = {op, {word + 2, word + count}};
+                break;
+            case spv::OpConstant:
+                m.constants[word[2]] = word[3];
+                break;
+            case spv::OpVariable:
+                m.variables.push_back({word[2], word[1], spv::StorageClass(word[3])});
+                break;
+            default:
+                break;
         }
         at += count;
     }
@@ -107,7 +116,8 @@ MemberLayout describe_type(const Module& m, uint32_t id) {
         case spv::OpTypeStruct: {
             result.type = m.names.count(id) ? m.names.at(id) : "";
             result.members = struct_members(m, id);
-            if (!result.members.empty()) result.size = result.members.back().offset + result.members.back().size;
+            if (!result.members.empty())
+                result.size = result.members.back().offset + result.members.back().size;
             break;
         }
         case spv::OpTypeArray: {
@@ -117,7 +127,9 @@ MemberLayout describe_type(const Module& m, uint32_t id) {
             result.size = m.array_strides.at(id) * length;
             break;
         }
-        case spv::OpTypeRuntimeArray: result.type = describe_type(m, type.operands[0]).type + "[]"; break;
+        case spv::OpTypeRuntimeArray:
+            result.type = describe_type(m, type.operands[0]).type + "[]";
+            break;
         default:
             result.type = scalar_name(type);
             result.size = type.operands.empty() ? 4 : type.operands[0] / 8;
@@ -133,7 +145,8 @@ std::vector<MemberLayout> struct_members(const Module& m, uint32_t id) {
         const auto names = m.member_names.find(id);
         if (names != m.member_names.end() && i < names->second.size()) member.name = names->second[i];
         const auto offsets = m.member_offsets.find(id);
-        if (offsets != m.member_offsets.end() && offsets->second.count(i)) member.offset = offsets->second.at(i);
+        if (offsets != m.member_offsets.end() && offsets->second.count(i))
+            member.offset = offsets->second.at(i);
         members.push_back(std::move(member));
     }
     return members;

@@ -10,7 +10,8 @@
 
 namespace etendue {
 
-// A member of a buffer's struct. `type` is the GLSL spelling: float, uint, int, vec3, mat4x3, or a struct's name.
+// A member of a buffer's struct. `type` is the GLSL spelling: float, uint, int, vec3, mat4x3, or a struct's
+// name.
 struct MemberLayout {
     std::string name, type;
     uint32_t offset = 0, size = 0;      // bytes

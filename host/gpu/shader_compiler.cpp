@@ -30,8 +30,8 @@ const char* const prelude = R"(#version 460
 #extension GL_EXT_buffer_reference_uvec2 : enable
 )";
 
-// All names are relative to the shader root, so the includer of a file plays no part. A file is included once: a second
-// #include of it is empty, so that every file names what it needs.
+// All names are relative to the shader root, so the includer of a file plays no part. A file is included
+// once: a second #include of it is empty, so that every file names what it needs.
 class Includer : public glslang::TShader::Includer {
   public:
     explicit Includer(const ShaderSources& sources) : sources_(sources) {}
@@ -81,7 +81,8 @@ bool read_spirv(const std::filesystem::path& path, Spirv& spirv) {
     return file.good() && spirv[0] == 0x07230203u;
 }
 
-// Written beside its place and renamed, so that a reader never sees half a file. A full disk only costs the cache.
+// Written beside its place and renamed, so that a reader never sees half a file. A full disk only costs the
+// cache.
 void write_spirv(const std::filesystem::path& path, const Spirv& spirv) {
     std::filesystem::path temporary = path;
     temporary += fmt::format(".{}", ::getpid());
@@ -89,8 +90,10 @@ void write_spirv(const std::filesystem::path& path, const Spirv& spirv) {
     file.write(reinterpret_cast<const char*>(spirv.data()), std::streamsize(spirv.size() * 4));
     file.close();
     std::error_code error;
-    if (file) std::filesystem::rename(temporary, path, error);
-    else std::filesystem::remove(temporary, error);
+    if (file)
+        std::filesystem::rename(temporary, path, error);
+    else
+        std::filesystem::remove(temporary, error);
 }
 
 void optimize(Spirv& spirv) {
@@ -110,7 +113,8 @@ struct GlslangProcess {
 
 }  // namespace
 
-CompiledShader compile_shader(const ShaderSources& sources, const std::string& name, const CompileOptions& options) {
+CompiledShader compile_shader(const ShaderSources& sources, const std::string& name,
+                              const CompileOptions& options) {
     static GlslangProcess process;
     const auto start = std::chrono::steady_clock::now();
     CompiledShader result;
@@ -149,7 +153,8 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
     glslang::TShader shader(EShLangCompute);
     set_up(shader);
     Includer includer(sources);
-    if (!shader.parse(limits, 460, false, messages, includer)) fail_input("{}", first_error(shader.getInfoLog()));
+    if (!shader.parse(limits, 460, false, messages, includer))
+        fail_input("{}", first_error(shader.getInfoLog()));
     glslang::TProgram program;
     program.addShader(&shader);
     if (!program.link(messages) || !program.mapIO()) fail_input("{}", first_error(program.getInfoLog()));
@@ -164,9 +169,12 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
 
 std::filesystem::path default_cache_folder() {
     std::filesystem::path folder;
-    if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg) folder = xdg;
-    else if (const char* home = std::getenv("HOME"); home && *home) folder = std::filesystem::path(home) / ".cache";
-    else return {};
+    if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg && *xdg)
+        folder = xdg;
+    else if (const char* home = std::getenv("HOME"); home && *home)
+        folder = std::filesystem::path(home) / ".cache";
+    else
+        return {};
     folder = folder / "etendue" / "kernels";
     std::error_code error;
     std::filesystem::create_directories(folder, error);

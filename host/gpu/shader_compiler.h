@@ -12,21 +12,22 @@ namespace etendue {
 using Spirv = std::vector<uint32_t>;
 
 struct CompiledShader {
-    std::string name;      // of the kernel: its file name without folder and ending
+    std::string name;  // of the kernel: its file name without folder and ending
     Spirv spirv;
     bool from_cache = false;
-    double seconds = 0;    // compile time, 0 from the cache
+    double seconds = 0;  // compile time, 0 from the cache
 };
 
 struct CompileOptions {
-    std::string defines;                  // GLSL text put behind the prelude, e.g. "#define HAS_TEXTURES 0\n"
-    std::filesystem::path cache_folder;   // empty = no cache
-    bool optimize = true;                 // SPIRV-Tools performance passes: halves the driver's pipeline creation
+    std::string defines;                 // GLSL text put behind the prelude, e.g. "#define HAS_TEXTURES 0\n"
+    std::filesystem::path cache_folder;  // empty = no cache
+    bool optimize = true;  // SPIRV-Tools performance passes: halves the driver's pipeline creation
 };
 
-// Compiles the file `name` of `sources` as a compute shader. Errors: fail_input with the compiler's first message,
-// file and line.
-CompiledShader compile_shader(const ShaderSources& sources, const std::string& name, const CompileOptions& options = {});
+// Compiles the file `name` of `sources` as a compute shader. Errors: fail_input with the compiler's first
+// message, file and line.
+CompiledShader compile_shader(const ShaderSources& sources, const std::string& name,
+                              const CompileOptions& options = {});
 
 // $XDG_CACHE_HOME/etendue or ~/.cache/etendue; created where needed; empty where neither can be.
 std::filesystem::path default_cache_folder();

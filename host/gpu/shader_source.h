@@ -1,5 +1,5 @@
-// Where shader text comes from: the copy embedded in the binary, a folder on disk (--shaders), text that the host
-// generates for a scene, and class files that a scene brings along.
+// Where shader text comes from: the copy embedded in the binary, a folder on disk (--shaders), text that the
+// host generates for a scene, and class files that a scene brings along.
 #pragma once
 #include <filesystem>
 #include <map>

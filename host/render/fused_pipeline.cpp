@@ -4,20 +4,27 @@
 
 namespace etendue {
 
-Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const RenderSettings& s, const Buffer& film,
-                                       const Buffer& counters)
+Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const RenderSettings& s,
+                                       const Buffer& film, const Buffer& counters)
     : Pipeline(s) {
-    trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", {{"Film", &film}, {"CounterSums", &counters}});
+    trace_paths =
+        make_kernel(device, scene, "kernels/trace_paths.comp", {{"Film", &film}, {"CounterSums", &counters}});
     // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
     const uint32_t pixels = settings.width * settings.height;
     const uint32_t pixels_a_lane = device.description.type == "CPU" ? 8 : 1;
-    groups = std::max(1u, (pixels + trace_paths.group_size() * pixels_a_lane - 1) / (trace_paths.group_size() * pixels_a_lane));
+    groups = std::max(1u, (pixels + trace_paths.group_size() * pixels_a_lane - 1) /
+                              (trace_paths.group_size() * pixels_a_lane));
 }
 
-void Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) {
+void Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
+                                  KernelTimings& timings) {
     commands.dispatch(trace_paths, groups,
-                      {{"receiver", settings.receiver}, {"width", settings.width}, {"height", settings.height},
-                       {"first_sample", uint32_t(first)}, {"sample_count", count}, {"seed", settings.seed}});
+                      {{"receiver", settings.receiver},
+                       {"width", settings.width},
+                       {"height", settings.height},
+                       {"first_sample", uint32_t(first)},
+                       {"sample_count", count},
+                       {"seed", settings.seed}});
     commands.run(&timings);
 }
 

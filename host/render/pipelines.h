@@ -1,4 +1,5 @@
-// The schedules of a pass. A pipeline owns its kernels and path buffers and records passes into a command list.
+// The schedules of a pass. A pipeline owns its kernels and path buffers and records passes into a command
+// list.
 #pragma once
 #include "host/render/renderer.h"
 
@@ -15,7 +16,8 @@ struct Renderer::Pipeline {
 };
 
 struct Renderer::FusedPipeline : Pipeline {
-    FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film, const Buffer& counters);
+    FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film,
+                  const Buffer& counters);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     Kernel trace_paths;
@@ -23,15 +25,17 @@ struct Renderer::FusedPipeline : Pipeline {
 };
 
 struct Renderer::WavefrontPipeline : Pipeline {
-    WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film, const Buffer& counters);
+    WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film,
+                      const Buffer& counters);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     // One batch: `samples` samples of the pixels [first_pixel, first_pixel + pixels).
-    void run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample, uint32_t samples,
-                  KernelTimings& timings);
+    void run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample,
+                  uint32_t samples, KernelTimings& timings);
     uint32_t slots = 0;         // paths in memory
     uint32_t items_a_lane = 1;  // of a queue
-    Buffer ray_origins, ray_directions, path_states, shadow_rays, ray_queue, queue_counts, hits, hit_instances;
+    Buffer ray_origins, ray_directions, path_states, shadow_rays, ray_queue, queue_counts, hits,
+        hit_instances;
     Kernel emit_camera_rays, find_hits, scatter_paths, find_occlusions, accumulate_film;
 };
 

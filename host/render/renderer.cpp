@@ -29,21 +29,31 @@ struct CounterSums {
 }  // namespace
 
 const char* schedule_name(Schedule schedule) {
-    return schedule == Schedule::fused ? "fused" : schedule == Schedule::wavefront ? "wavefront" : "automatic";
+    return schedule == Schedule::fused       ? "fused"
+           : schedule == Schedule::wavefront ? "wavefront"
+                                             : "automatic";
 }
 
 nlohmann::json to_json(const RenderCounters& c) {
-    return {{"rays", c.rays}, {"shadow_rays", c.shadow_rays}, {"non_finite", c.non_finite},
-            {"depth_limit", c.depth_limit}, {"escaped", c.escaped}, {"depth_limit_lost", c.depth_limit_lost}};
+    return {{"rays", c.rays},
+            {"shadow_rays", c.shadow_rays},
+            {"non_finite", c.non_finite},
+            {"depth_limit", c.depth_limit},
+            {"escaped", c.escaped},
+            {"depth_limit_lost", c.depth_limit_lost}};
 }
 
 RenderCounters counters_from_json(const nlohmann::json& j) {
-    return {j.value("rays", uint64_t(0)), j.value("shadow_rays", uint64_t(0)), j.value("non_finite", uint64_t(0)),
-            j.value("depth_limit", uint64_t(0)), j.value("escaped", 0.0), j.value("depth_limit_lost", 0.0)};
+    return {j.value("rays", uint64_t(0)),
+            j.value("shadow_rays", uint64_t(0)),
+            j.value("non_finite", uint64_t(0)),
+            j.value("depth_limit", uint64_t(0)),
+            j.value("escaped", 0.0),
+            j.value("depth_limit_lost", 0.0)};
 }
 
-// Measured on lavapipe: while the hierarchy fits in the cache and few classes share a kernel, state in registers wins;
-// beyond that long traversals of few lanes hold up the shading of all.
+// Measured on lavapipe: while the hierarchy fits in the cache and few classes share a kernel, state in
+// registers wins; beyond that long traversals of few lanes hold up the shading of all.
 Schedule choose_schedule(const Scene& scene) {
     size_t classes = 0;
     for (const auto& [interface, used] : scene.classes) classes += used.size();
@@ -51,9 +61,13 @@ Schedule choose_schedule(const Scene& scene) {
 }
 
 Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
-    : device_(device), scene_(scene), settings_(settings), schedule_(settings.schedule),
+    : device_(device),
+      scene_(scene),
+      settings_(settings),
+      schedule_(settings.schedule),
       film_(device, uint64_t(settings.width) * settings.height * sizeof(FilmPixel), "Film"),
-      counter_sums_(device, sizeof(CounterSums), "CounterSums"), commands_(device) {
+      counter_sums_(device, sizeof(CounterSums), "CounterSums"),
+      commands_(device) {
     film_.fill(0);
     counter_sums_.fill(0);
     if (schedule_ == Schedule::automatic) schedule_ = choose_schedule(scene);
@@ -118,7 +132,9 @@ Image Renderer::develop() const {
             errors[i][c] = n > 1 ? float(std::sqrt(variance / (n - 1))) : INFINITY;
         }
     }
-    const auto floats = [](const std::vector<glm::vec3>& v) { return std::span<const float>(&v[0].x, 3 * v.size()); };
+    const auto floats = [](const std::vector<glm::vec3>& v) {
+        return std::span<const float>(&v[0].x, 3 * v.size());
+    };
     add_channels(image, {"R", "G", "B"}, floats(means), 3);
     add_channels(image, {"error.R", "error.G", "error.B"}, floats(errors), 3);
     return image;
@@ -133,8 +149,11 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
     const Buffer buffer(device_, pixels * sizeof(Aov), "Aovs");
     const Kernel kernel = make_kernel(device_, scene_, "kernels/trace_aovs.comp", {{"Aovs", &buffer}});
     commands_.dispatch(kernel, uint32_t((pixels + kernel.group_size() - 1) / kernel.group_size()),
-                       {{"receiver", settings_.receiver}, {"width", settings_.width}, {"height", settings_.height},
-                        {"sample_count", count}, {"seed", settings_.seed}});
+                       {{"receiver", settings_.receiver},
+                        {"width", settings_.width},
+                        {"height", settings_.height},
+                        {"sample_count", count},
+                        {"seed", settings_.seed}});
     commands_.run(&timings_);
     const auto aovs = buffer.read_array<Aov>(pixels);
     add_channels(image, {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"},
@@ -159,7 +178,8 @@ void Renderer::restore(const FilmState& state) {
 double estimated_relative_error(const Image& image) {
     double sum = 0;
     for (const char* channel : {"R", "G", "B"}) {
-        const int value = find_channel(image, channel), error = find_channel(image, std::string("error.") + channel);
+        const int value = find_channel(image, channel),
+                  error = find_channel(image, std::string("error.") + channel);
         if (value < 0 || error < 0) return INFINITY;
         const auto values = plane(image, size_t(value)), errors = plane(image, size_t(error));
         double mean = 0;
@@ -168,7 +188,8 @@ double estimated_relative_error(const Image& image) {
         const double floor = std::max(0.01 * mean * mean, 1e-300);
         for (size_t i = 0; i < values.size(); ++i) {
             if (std::isinf(errors[i])) return INFINITY;
-            sum += double(errors[i]) * errors[i] / (double(values[i]) * values[i] + floor) / (3.0 * double(values.size()));
+            sum += double(errors[i]) * errors[i] / (double(values[i]) * values[i] + floor) /
+                   (3.0 * double(values.size()));
         }
     }
     return std::sqrt(sum);

@@ -1,7 +1,7 @@
 // Passes over a scene: the schedule of kernels that fills the film of one receiver.
 //
-// A pass is one backward path a pixel. Each pixel's samples are added in order of their index whatever the size of a
-// batch, so the film after n passes is the same bits for the same seed and device.
+// A pass is one backward path a pixel. Each pixel's samples are added in order of their index whatever the
+// size of a batch, so the film after n passes is the same bits for the same seed and device.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -56,7 +56,7 @@ class Renderer {
     uint64_t passes() const { return passes_; }
     const RenderCounters& counters() const { return counters_; }
     const KernelTimings& timings() const { return timings_; }
-    double seconds() const { return seconds_; }  // in render_passes
+    double seconds() const { return seconds_; }                  // in render_passes
     double warm_up_seconds() const { return warm_up_seconds_; }  // that the driver took to finish compiling
     Schedule schedule() const { return schedule_; }
 
@@ -86,8 +86,8 @@ class Renderer {
     double seconds_ = 0, last_pass_seconds_ = 0, warm_up_seconds_ = 0;
 };
 
-// Root of the estimated relMSE: sqrt(mean(error² / (I² + 0.01 mean(I)²))) over pixels and channels of an image with an
-// error layer. Infinite before the second pass.
+// Root of the estimated relMSE: sqrt(mean(error² / (I² + 0.01 mean(I)²))) over pixels and channels of an
+// image with an error layer. Infinite before the second pass.
 double estimated_relative_error(const Image& image);
 
 }  // namespace etendue

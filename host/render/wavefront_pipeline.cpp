@@ -10,8 +10,8 @@ constexpr uint32_t cpu_slots = 1 << 16, gpu_slots = 1 << 20;
 
 }  // namespace
 
-Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& s, const Buffer& film,
-                                               const Buffer& counters)
+Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& s,
+                                               const Buffer& film, const Buffer& counters)
     : Pipeline(s) {
     const bool cpu = device.description.type == "CPU";
     const uint32_t pixels = settings.width * settings.height;
@@ -26,17 +26,26 @@ Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, con
     queue_counts = Buffer(device, (2 * bounces_a_submission + 2) * 4, "QueueCounts");
     hits = Buffer(device, uint64_t(slots) * 16, "Hits");
     hit_instances = Buffer(device, scene.features.instances ? uint64_t(slots) * 4 : 0, "HitInstances");
-    const BufferTable table = {{"RayOrigins", &ray_origins}, {"RayDirections", &ray_directions}, {"PathStates", &path_states},
-                               {"ShadowRays", &shadow_rays}, {"RayQueue", &ray_queue}, {"QueueCounts", &queue_counts},
-                               {"Hits", &hits}, {"HitInstances", &hit_instances}, {"Film", &film}, {"CounterSums", &counters}};
+    const BufferTable table = {{"RayOrigins", &ray_origins},
+                               {"RayDirections", &ray_directions},
+                               {"PathStates", &path_states},
+                               {"ShadowRays", &shadow_rays},
+                               {"RayQueue", &ray_queue},
+                               {"QueueCounts", &queue_counts},
+                               {"Hits", &hits},
+                               {"HitInstances", &hit_instances},
+                               {"Film", &film},
+                               {"CounterSums", &counters}};
     emit_camera_rays = make_kernel(device, scene, "kernels/emit_camera_rays.comp", table);
     find_hits = make_kernel(device, scene, "kernels/find_hits.comp", table, "#define HAS_RAY_QUEUE 1\n");
     scatter_paths = make_kernel(device, scene, "kernels/scatter_paths.comp", table);
-    if (scene.features.light_count > 0) find_occlusions = make_kernel(device, scene, "kernels/find_occlusions.comp", table);
+    if (scene.features.light_count > 0)
+        find_occlusions = make_kernel(device, scene, "kernels/find_occlusions.comp", table);
     accumulate_film = make_kernel(device, scene, "kernels/accumulate_film.comp", table);
 }
 
-void Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) {
+void Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
+                                      KernelTimings& timings) {
     const uint32_t pixels = settings.width * settings.height;
     const uint32_t tile = std::min(pixels, slots);
     const uint32_t samples_at_once = std::max(1u, slots / pixels);
@@ -46,8 +55,8 @@ void Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uin
                      std::min(samples_at_once, count - sample), timings);
 }
 
-void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample,
-                                           uint32_t samples, KernelTimings& timings) {
+void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels,
+                                           uint32_t first_sample, uint32_t samples, KernelTimings& timings) {
     const auto groups = [&](const Kernel& kernel, uint32_t items, uint32_t a_lane) {
         const uint32_t size = kernel.group_size() * a_lane;
         return std::max(2u, (items + size - 1) / size);
@@ -55,20 +64,35 @@ void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first
     const uint32_t paths = pixels * samples;
     commands.fill(queue_counts, 0);
     commands.dispatch(emit_camera_rays, groups(emit_camera_rays, paths, 1),
-                      {{"receiver", settings.receiver}, {"slots", paths}, {"first_pixel", first_pixel}, {"tile_pixels", pixels},
-                       {"first_sample", first_sample}, {"width", settings.width}, {"height", settings.height}, {"seed", settings.seed}});
+                      {{"receiver", settings.receiver},
+                       {"slots", paths},
+                       {"first_pixel", first_pixel},
+                       {"tile_pixels", pixels},
+                       {"first_sample", first_sample},
+                       {"width", settings.width},
+                       {"height", settings.height},
+                       {"seed", settings.seed}});
     uint32_t alive = paths;
     for (uint32_t total = 0; alive > 0; total += bounces_a_submission) {
         for (uint32_t bounce = 0; bounce < bounces_a_submission; ++bounce) {
-            // The queues take turns; a submission has an even number of bounces, so each starts with the first.
+            // The queues take turns; a submission has an even number of bounces, so each starts with the
+            // first.
             const uint32_t read = bounce % 2 ? slots : 0, write = bounce % 2 ? 0 : slots;
-            commands.dispatch(find_hits, groups(find_hits, alive, items_a_lane), {{"bounce", bounce}, {"read_queue", read}});
+            commands.dispatch(find_hits, groups(find_hits, alive, items_a_lane),
+                              {{"bounce", bounce}, {"read_queue", read}});
             commands.dispatch(scatter_paths, groups(scatter_paths, alive, items_a_lane),
-                              {{"bounce", bounce}, {"read_queue", read}, {"write_queue", write}, {"first_pixel", first_pixel},
-                               {"tile_pixels", pixels}, {"first_sample", first_sample}, {"width", settings.width},
-                               {"height", settings.height}, {"seed", settings.seed}});
+                              {{"bounce", bounce},
+                               {"read_queue", read},
+                               {"write_queue", write},
+                               {"first_pixel", first_pixel},
+                               {"tile_pixels", pixels},
+                               {"first_sample", first_sample},
+                               {"width", settings.width},
+                               {"height", settings.height},
+                               {"seed", settings.seed}});
             if (!find_occlusions.name().empty())
-                commands.dispatch(find_occlusions, groups(find_occlusions, alive, items_a_lane), {{"bounce", bounce}});
+                commands.dispatch(find_occlusions, groups(find_occlusions, alive, items_a_lane),
+                                  {{"bounce", bounce}});
         }
         commands.run(&timings);
         auto counts = queue_counts.read_array<uint32_t>(2 * bounces_a_submission + 2);
@@ -84,7 +108,8 @@ void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first
 
 void Renderer::WavefrontPipeline::warm_up(CommandList& commands) {
     commands.fill(queue_counts, 0);
-    for (const Kernel* kernel : {&emit_camera_rays, &find_hits, &scatter_paths, &find_occlusions, &accumulate_film})
+    for (const Kernel* kernel :
+         {&emit_camera_rays, &find_hits, &scatter_paths, &find_occlusions, &accumulate_film})
         if (!kernel->name().empty()) commands.dispatch(*kernel, 1);
     commands.run();
 }

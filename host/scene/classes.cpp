@@ -17,8 +17,10 @@ std::string camel_case(const std::string& name) {
     std::string result;
     bool upper = true;
     for (char c : name) {
-        if (c == '_' || c == '-') upper = true;
-        else result += upper ? char(std::toupper(c)) : c, upper = false;
+        if (c == '_' || c == '-')
+            upper = true;
+        else
+            result += upper ? char(std::toupper(c)) : c, upper = false;
     }
     return result;
 }
@@ -50,11 +52,13 @@ void parse_annotation(const std::string& annotation, Parameter& p, const std::st
         R"(^(\[[^\]]*\]|\S+?)(?:\s+in\s+([\[(])\s*([^,\s]+)\s*,\s*([^\])\s]+)\s*([\])]))?(?:\s+(\S[^.]*?))?\.(?:\s+(.*))?$)");
     std::smatch match;
     if (!std::regex_match(annotation, match, form))
-        fail_input("{}: the comment of member {} reads '{}'; expected '//: DEFAULT [in RANGE] [UNIT]. Description.'", file,
-                   p.member.name, annotation);
+        fail_input(
+            "{}: the comment of member {} reads '{}'; expected '//: DEFAULT [in RANGE] [UNIT]. Description.'",
+            file, p.member.name, annotation);
     p.from_scene = true;
     const std::string value = match[1];
-    if (value == "required") p.required = true;
+    if (value == "required")
+        p.required = true;
     else if (value != "none") {
         p.default_value = nlohmann::json::parse(value, nullptr, false);
         if (p.default_value.is_discarded())
@@ -94,12 +98,18 @@ const BlockLayout& reflected_block(const ShaderLayout& layout) {
 
 const std::array<InterfaceInfo, 6>& all_interfaces() {
     static const std::array<InterfaceInfo, 6> table = {{
-        {Interface::geometry, "geometry", "geometry", "interfaces/geometry.glsl", "GEOMETRY_CLASSES", "GeometryRecords"},
-        {Interface::light, "light", "lights", "interfaces/light_source.glsl", "LIGHT_CLASSES", "LightRecords"},
-        {Interface::receiver, "receiver", "receivers", "interfaces/receiver.glsl", "RECEIVER_CLASSES", "ReceiverRecords"},
-        {Interface::surface, "surface", "surfaces", "interfaces/surface_optics.glsl", "SURFACE_CLASSES", "SurfaceRecords"},
-        {Interface::medium, "medium", "media", "interfaces/medium_optics.glsl", "MEDIUM_CLASSES", "MediumRecords"},
-        {Interface::element, "element", "elements", "interfaces/optical_element.glsl", "ELEMENT_CLASSES", "ElementRecords"},
+        {Interface::geometry, "geometry", "geometry", "interfaces/geometry.glsl", "GEOMETRY_CLASSES",
+         "GeometryRecords"},
+        {Interface::light, "light", "lights", "interfaces/light_source.glsl", "LIGHT_CLASSES",
+         "LightRecords"},
+        {Interface::receiver, "receiver", "receivers", "interfaces/receiver.glsl", "RECEIVER_CLASSES",
+         "ReceiverRecords"},
+        {Interface::surface, "surface", "surfaces", "interfaces/surface_optics.glsl", "SURFACE_CLASSES",
+         "SurfaceRecords"},
+        {Interface::medium, "medium", "media", "interfaces/medium_optics.glsl", "MEDIUM_CLASSES",
+         "MediumRecords"},
+        {Interface::element, "element", "elements", "interfaces/optical_element.glsl", "ELEMENT_CLASSES",
+         "ElementRecords"},
     }};
     return table;
 }
@@ -153,7 +163,8 @@ void ClassRegistry::add_class_file(Interface interface, const std::filesystem::p
     info.tag = 128;
     for (const ClassInfo& other : classes) {
         if (other.name == info.name)
-            fail_input("{}: there is already a {} class called {}", info.file, interface_info(interface).name, info.name);
+            fail_input("{}: there is already a {} class called {}", info.file, interface_info(interface).name,
+                       info.name);
         info.tag = std::max(info.tag, other.tag + 1);
     }
     std::ifstream stream(file, std::ios::binary);
@@ -166,7 +177,9 @@ void ClassRegistry::add_class_file(Interface interface, const std::filesystem::p
     classes.push_back(std::move(info));
 }
 
-const std::vector<ClassInfo>& ClassRegistry::classes(Interface interface) const { return classes_.at(interface); }
+const std::vector<ClassInfo>& ClassRegistry::classes(Interface interface) const {
+    return classes_.at(interface);
+}
 
 const ClassInfo* ClassRegistry::find(Interface interface, const std::string& name) {
     for (ClassInfo& info : classes_.at(interface))
@@ -187,7 +200,8 @@ std::vector<MemberLayout> ClassRegistry::reflect_struct(const std::string& file,
 void ClassRegistry::reflect(ClassInfo& info) const {
     const InterfaceInfo& interface = interface_info(info.interface);
     ShaderSources sources = sources_;
-    sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] = class_header(interface, {&info});
+    sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] =
+        class_header(interface, {&info});
     const ShaderLayout layout =
         compile_layout(std::move(sources), fmt::format("#include \"{}\"\n", interface.contract), info.record);
     const BlockLayout& block = reflected_block(layout);
@@ -215,16 +229,18 @@ void ClassRegistry::reflect(ClassInfo& info) const {
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
                          const std::map<std::string, std::string>& constants) {
     std::string text = fmt::format("#define {}(X)", interface.table);
-    for (const ClassInfo* info : classes) text += fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
+    for (const ClassInfo* info : classes)
+        text += fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
     text += '\n';
     for (const ClassInfo* info : classes) {
         text += fmt::format("#include \"{}\"\n", info->file);
         // All classes of an interface are views of one buffer, on one binding.
-        text += fmt::format("layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {} {}_records[]; }};\n",
-                            int(interface.interface), interface.buffer, info->name, info->record, info->name);
+        text += fmt::format(
+            "layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {} {}_records[]; }};\n",
+            int(interface.interface), interface.buffer, info->name, info->record, info->name);
         const auto known = constants.find(info->name);
-        text += fmt::format("{0} {1}_record(uint index) {{ {0} r = {1}_records[index]; {2}return r; }}\n", info->record,
-                            info->name, known == constants.end() ? "" : known->second);
+        text += fmt::format("{0} {1}_record(uint index) {{ {0} r = {1}_records[index]; {2}return r; }}\n",
+                            info->record, info->name, known == constants.end() ? "" : known->second);
     }
     return text;
 }

@@ -1,7 +1,7 @@
 // The classes of scene objects: read from shaders/registry.h and from class files, never declared in C++.
 //
-// A class's record is a struct in its GLSL file. Names, types and offsets of the members come from reflecting the
-// compiled struct; default, range, unit and meaning of a parameter from the comment behind its member:
+// A class's record is a struct in its GLSL file. Names, types and offsets of the members come from reflecting
+// the compiled struct; default, range, unit and meaning of a parameter from the comment behind its member:
 //
 //     float alpha;  //: 0 in [0, 1] UNIT. Description.
 //
@@ -34,7 +34,7 @@ const InterfaceInfo& interface_info(Interface interface);
 
 struct Parameter {
     MemberLayout member;
-    bool from_scene = false;       // has a `//:` comment
+    bool from_scene = false;  // has a `//:` comment
     bool required = false;
     nlohmann::json default_value;  // null = absent
     double lo = -std::numeric_limits<double>::infinity(), hi = std::numeric_limits<double>::infinity();
@@ -51,7 +51,7 @@ struct ClassInfo {
     std::string record, name, file;  // struct, class, GLSL file
     std::string summary;             // the comment at the head of the file
     // Filled by reflection, at first use:
-    uint32_t stride = 0;             // bytes of a record
+    uint32_t stride = 0;  // bytes of a record
     std::vector<Parameter> parameters;
 };
 
@@ -60,16 +60,19 @@ class ClassRegistry {
   public:
     explicit ClassRegistry(ShaderSources sources);
 
-    // Adds a class from a file outside the registry: class name = file stem, record = its struct named in CamelCase
-    // of the stem. Fails with the file's name where the file or the struct is missing, or the name is taken.
+    // Adds a class from a file outside the registry: class name = file stem, record = its struct named in
+    // CamelCase of the stem. Fails with the file's name where the file or the struct is missing, or the name
+    // is taken.
     void add_class_file(Interface interface, const std::filesystem::path& file);
 
-    const std::vector<ClassInfo>& classes(Interface interface) const;  // in order of tags, perhaps not reflected yet
+    const std::vector<ClassInfo>& classes(
+        Interface interface) const;  // in order of tags, perhaps not reflected yet
     // Reflected; null where there is no such class.
     const ClassInfo* find(Interface interface, const std::string& name);
 
     // Layout of any struct that shader file `file` declares.
-    std::vector<MemberLayout> reflect_struct(const std::string& file, const std::string& name, uint32_t& stride) const;
+    std::vector<MemberLayout> reflect_struct(const std::string& file, const std::string& name,
+                                             uint32_t& stride) const;
 
     const ShaderSources& sources() const { return sources_; }
 
@@ -79,9 +82,10 @@ class ClassRegistry {
     std::map<Interface, std::vector<ClassInfo>> classes_;
 };
 
-// Text of "generated/NAME_classes.glsl" for the given classes: the dispatch table, the class files, their buffers, and for
-// each class a function NAME_record(index). `constants` gives, by class, GLSL statements that set members of a record `r`
-// to what they are in every record of the scene, so that the compiler drops what they switch off.
+// Text of "generated/NAME_classes.glsl" for the given classes: the dispatch table, the class files, their
+// buffers, and for each class a function NAME_record(index). `constants` gives, by class, GLSL statements
+// that set members of a record `r` to what they are in every record of the scene, so that the compiler drops
+// what they switch off.
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
                          const std::map<std::string, std::string>& constants = {});
 

@@ -1,4 +1,5 @@
-// A scene as its file describes it: plain data, validated, in world units, before any class or device is known.
+// A scene as its file describes it: plain data, validated, in world units, before any class or device is
+// known.
 //
 // The importer (gltf.h) makes one; compile_scene (scene.h) turns it into records, hierarchies and buffers.
 // Units: metres, radians, nanometres; radiance so that (1,1,1) has luminance 1 cd/m².
@@ -15,31 +16,32 @@
 
 namespace etendue {
 
-// One object of a class behind one of the six interfaces. `parameters` is a JSON object whose keys are members of
-// the class's record (unknown keys are reported when the record is filled). Values follow the scene format; a glTF
-// textureInfo is {"index": i, "texCoord": n, …} with `index` into SceneDescription::textures. Paths of files inside
-// `parameters` are relative to SceneDescription::folder.
+// One object of a class behind one of the six interfaces. `parameters` is a JSON object whose keys are
+// members of the class's record (unknown keys are reported when the record is filled). Values follow the
+// scene format; a glTF textureInfo is {"index": i, "texCoord": n, …} with `index` into
+// SceneDescription::textures. Paths of files inside `parameters` are relative to SceneDescription::folder.
 struct ObjectDescription {
     std::string class_name;
     nlohmann::json parameters = nlohmann::json::object();
     std::string where;  // JSON pointer of the object in the scene file, for messages
 };
 
-// The emission of a material. `value` is in the unit that `quantity` names: radiance and luminance in the unit of
-// the image (1 = 1 cd/m² for white), power and flux of the whole emitting object in W (or lm for flux).
+// The emission of a material. `value` is in the unit that `quantity` names: radiance and luminance in the
+// unit of the image (1 = 1 cd/m² for white), power and flux of the whole emitting object in W (or lm for
+// flux).
 struct EmissionDescription {
     enum class Quantity { radiance, luminance, power, flux };
     Quantity quantity = Quantity::radiance;
-    nlohmann::json value = 0.0;     // a spectral value
-    nlohmann::json spectrum;        // a spectral value that multiplies `value`; null = 1
-    nlohmann::json texture;         // glTF textureInfo (emissiveTexture), or null
+    nlohmann::json value = 0.0;  // a spectral value
+    nlohmann::json spectrum;     // a spectral value that multiplies `value`; null = 1
+    nlohmann::json texture;      // glTF textureInfo (emissiveTexture), or null
     std::string where;
 };
 
 struct MaterialDescription {
     std::string name;
     ObjectDescription surface;
-    std::string inside, outside;    // names of media; empty = none named
+    std::string inside, outside;  // names of media; empty = none named
     std::optional<EmissionDescription> emission;
     bool double_sided = false;      // emits on both sides (surfaces scatter on both sides in any case)
     nlohmann::json normal_texture;  // glTF normalTextureInfo with `scale`, or null
@@ -53,13 +55,13 @@ struct MediumDescription {
 // One glTF primitive: indexed triangles. Every attribute array is empty or as long as `positions`.
 struct MeshDescription {
     std::string name, where;
-    std::vector<glm::vec3> positions;   // m, finite
-    std::vector<glm::vec3> normals;     // unit
-    std::vector<glm::vec4> tangents;    // unit, w = ±1
+    std::vector<glm::vec3> positions;  // m, finite
+    std::vector<glm::vec3> normals;    // unit
+    std::vector<glm::vec4> tangents;   // unit, w = ±1
     std::vector<glm::vec2> uv0, uv1;
     std::vector<glm::vec4> colors;      // linear
     std::vector<glm::uvec3> triangles;  // all indices in range; triangles of zero area already left out
-    uint32_t material = 0;              // index into SceneDescription::materials (a default one is appended if needed)
+    uint32_t material = 0;  // index into SceneDescription::materials (a default one is appended if needed)
 };
 
 struct MeshInstance {
@@ -80,8 +82,8 @@ struct PlacedObject {
 struct ImageDescription {
     std::string name;
     uint32_t width = 0, height = 0;
-    std::vector<uint8_t> rgba8;     // 4 bytes a texel, or
-    std::vector<float> rgba32f;     // 4 floats a texel; exactly one of the two is filled
+    std::vector<uint8_t> rgba8;  // 4 bytes a texel, or
+    std::vector<float> rgba32f;  // 4 floats a texel; exactly one of the two is filled
 };
 
 enum class Wrap : uint32_t { repeat = 0, clamp = 1, mirror = 2 };

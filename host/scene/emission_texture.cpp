@@ -22,7 +22,8 @@ const std::array<float, 256>& srgb_table() {
 }
 
 glm::vec3 linear_texel(const ImageDescription& image, size_t i) {
-    if (!image.rgba32f.empty()) return {image.rgba32f[4 * i], image.rgba32f[4 * i + 1], image.rgba32f[4 * i + 2]};
+    if (!image.rgba32f.empty())
+        return {image.rgba32f[4 * i], image.rgba32f[4 * i + 1], image.rgba32f[4 * i + 2]};
     const auto& table = srgb_table();
     return {table[image.rgba8[4 * i]], table[image.rgba8[4 * i + 1]], table[image.rgba8[4 * i + 2]]};
 }
@@ -44,13 +45,17 @@ glm::vec3 mean_color(const ImageDescription& image) {
 }
 
 EmissionTexture::EmissionTexture(const ImageDescription& image, const TextureUse& use)
-    : use_(use), width_(int(image.width)), height_(int(image.height)), luminance_(size_t(image.width) * image.height) {
+    : use_(use),
+      width_(int(image.width)),
+      height_(int(image.height)),
+      luminance_(size_t(image.width) * image.height) {
     for (size_t i = 0; i < luminance_.size(); ++i)
         luminance_[i] = glm::dot(linear_texel(image, i), glm::vec3(0.2126f, 0.7152f, 0.0722f));
 }
 
 float EmissionTexture::texel(int x, int y) const {
-    return luminance_[size_t(wrap_texel(y, height_, use_.wrap_v)) * width_ + wrap_texel(x, width_, use_.wrap_u)];
+    return luminance_[size_t(wrap_texel(y, height_, use_.wrap_v)) * width_ +
+                      wrap_texel(x, width_, use_.wrap_u)];
 }
 
 bool EmissionTexture::is_dark(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const {
@@ -58,9 +63,11 @@ bool EmissionTexture::is_dark(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) co
     glm::dvec2 lo(1e30), hi(-1e30);
     for (int i = 0; i < 3; ++i) {
         const glm::vec2 uv = use_.uv_set == 0 ? uv0[i] : uv1[i];
-        const glm::dvec2 corner(glm::dot(glm::vec2(use_.uv_matrix.x, use_.uv_matrix.y), uv) + use_.uv_offset.x,
-                                glm::dot(glm::vec2(use_.uv_matrix.z, use_.uv_matrix.w), uv) + use_.uv_offset.y);
-        lo = glm::min(lo, corner * glm::dvec2(width_, height_)), hi = glm::max(hi, corner * glm::dvec2(width_, height_));
+        const glm::dvec2 corner(
+            glm::dot(glm::vec2(use_.uv_matrix.x, use_.uv_matrix.y), uv) + use_.uv_offset.x,
+            glm::dot(glm::vec2(use_.uv_matrix.z, use_.uv_matrix.w), uv) + use_.uv_offset.y);
+        lo = glm::min(lo, corner * glm::dvec2(width_, height_)),
+        hi = glm::max(hi, corner * glm::dvec2(width_, height_));
     }
     if (!((hi.x - lo.x + 4) * (hi.y - lo.y + 4) < max_texels) || !(glm::length(lo) < 1e6)) return false;
     for (int y = int(std::floor(lo.y - 1)); y <= int(std::ceil(hi.y)); ++y)

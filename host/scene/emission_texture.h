@@ -14,8 +14,8 @@ class EmissionTexture {
   public:
     EmissionTexture(const ImageDescription& image, const TextureUse& use);
 
-    // Whether every texel that filtering can reach from a triangle, given by its texture coordinates, is black. Triangles that
-    // cover more than 65536 texels count as not dark.
+    // Whether every texel that filtering can reach from a triangle, given by its texture coordinates, is
+    // black. Triangles that cover more than 65536 texels count as not dark.
     bool is_dark(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const;
 
   private:

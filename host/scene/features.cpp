@@ -15,7 +15,9 @@ Features Features::everything() {
 
 std::string Features::defines() const {
     std::string text;
-    const auto define = [&](const char* name, uint32_t value) { text += fmt::format("#define {} {}\n", name, value); };
+    const auto define = [&](const char* name, uint32_t value) {
+        text += fmt::format("#define {} {}\n", name, value);
+    };
     define("HAS_TRIANGLES", triangles);
     define("HAS_SHAPES", shapes);
     define("HAS_INSTANCES", instances);

@@ -1,5 +1,5 @@
-// What a scene needs, as the shaders see it: macros in front of every kernel, and one header of classes per interface.
-// Only what is listed here is compiled; record layouts never depend on it.
+// What a scene needs, as the shaders see it: macros in front of every kernel, and one header of classes per
+// interface. Only what is listed here is compiled; record layouts never depend on it.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,26 +7,26 @@
 namespace etendue {
 
 struct Features {
-    bool triangles = false;          // the world hierarchy holds triangles
-    bool shapes = false;             // … analytic shapes
-    bool instances = false;          // … instances of meshes
-    bool unrolled_traversal = false; // so few primitives that straight code tests them all
-    bool vertex_attributes = false;  // normals, tangents, texture coordinates or colors
+    bool triangles = false;           // the world hierarchy holds triangles
+    bool shapes = false;              // … analytic shapes
+    bool instances = false;           // … instances of meshes
+    bool unrolled_traversal = false;  // so few primitives that straight code tests them all
+    bool vertex_attributes = false;   // normals, tangents, texture coordinates or colors
     bool normal_maps = false;
     bool textures = false;
-    bool media = false;              // some medium absorbs
-    bool interfaces = false;         // some surface separates media: paths keep track of where they are
-    bool straight = false;           // some surface lets light pass straight on: shadow rays go through
+    bool media = false;       // some medium absorbs
+    bool interfaces = false;  // some surface separates media: paths keep track of where they are
+    bool straight = false;    // some surface lets light pass straight on: shadow rays go through
     bool light_tree = false;
-    bool nodes_by_address = false;   // arrays too large for one binding
+    bool nodes_by_address = false;  // arrays too large for one binding
     bool primitives_by_address = false;
     bool vertices_by_address = false;
     bool triangle_indices_by_address = false;
     bool texels_by_address = false;
     bool environment_texels_by_address = false;
-    uint32_t texture_formats = 7;    // of lib/textures.glsl, a bit each
-    uint32_t bvh_stack_size = 64;    // references that a traversal can hold back
-    uint32_t light_count = 0;        // finite and infinite lights
+    uint32_t texture_formats = 7;  // of lib/textures.glsl, a bit each
+    uint32_t bvh_stack_size = 64;  // references that a traversal can hold back
+    uint32_t light_count = 0;      // finite and infinite lights
     uint32_t infinite_light_count = 0;
 
     static Features everything();  // for lint and reflection

@@ -1,4 +1,5 @@
-// The node hierarchy: checked to be a forest, then walked from the roots, with transforms in double precision.
+// The node hierarchy: checked to be a forest, then walked from the roots, with transforms in double
+// precision.
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -34,8 +34,8 @@ int vector_length(const std::string& type) {
 }
 
 // One parameter, from its JSON value, into the record.
-void fill_parameter(const Parameter& p, const json& value, const std::string& where, const RecordResolver& resolver,
-                    std::vector<std::byte>& record) {
+void fill_parameter(const Parameter& p, const json& value, const std::string& where,
+                    const RecordResolver& resolver, std::vector<std::byte>& record) {
     const std::string& type = p.member.type;
     const uint32_t at = p.member.offset;
     const std::string place = message_place(resolver.scene, where);
@@ -44,7 +44,8 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
     } else if (const int length = vector_length(type)) {
         if (!value.is_array() || int(value.size()) != length)
             fail_input("{}: allowed: an array of {} numbers{}", place, length, allowed(p));
-        for (int i = 0; i < length; ++i) store(record, at + 4 * i, checked_number(value[i], p, fmt::format("{}/{}", place, i)));
+        for (int i = 0; i < length; ++i)
+            store(record, at + 4 * i, checked_number(value[i], p, fmt::format("{}/{}", place, i)));
     } else if (type == "uint" || type == "int") {
         // A bool of GLSL is a uint in a buffer; its default tells them apart.
         if (p.default_value.is_boolean()) {
@@ -53,22 +54,26 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
         } else {
             if (!value.is_number_integer()) fail_input("{}: allowed: a whole number{}", place, allowed(p));
             checked_number(value, p, place);
-            if (type == "uint" && value.get<int64_t>() < 0) fail_input("{}: allowed: a whole number >= 0", place);
+            if (type == "uint" && value.get<int64_t>() < 0)
+                fail_input("{}: allowed: a whole number >= 0", place);
             store(record, at, uint32_t(value.get<int64_t>()));
         }
     } else if (type == "SpectrumRef") {
         if (value.is_null()) return store(record, at, glm::vec4(-1, -1, -1, 0));
         const glm::vec3 rgb = spectral_value(value, resolver.scene, where);
         for (int i = 0; i < 3; ++i)
-            if (!p.in_range(rgb[i])) fail_input("{}: {} is out of range; allowed:{}", place, rgb[i], allowed(p));
+            if (!p.in_range(rgb[i]))
+                fail_input("{}: {} is out of range; allowed:{}", place, rgb[i], allowed(p));
         store(record, at, glm::vec4(rgb, 0));
     } else if (type == "TextureRef") {
         store(record, at, value.is_null() ? no_record : resolver.texture(value, p.unit != "data", where));
     } else if (type == "MediumRef") {
         uint32_t ref = no_record;
         if (!value.is_null()) {
-            const auto found = value.is_string() ? resolver.media.find(value.get<std::string>()) : resolver.media.end();
-            if (found == resolver.media.end()) fail_input("{}: {} is not the name of a medium", place, value.dump());
+            const auto found =
+                value.is_string() ? resolver.media.find(value.get<std::string>()) : resolver.media.end();
+            if (found == resolver.media.end())
+                fail_input("{}: {} is not the name of a medium", place, value.dump());
             ref = found->second;
         }
         store(record, at, ref);
@@ -76,7 +81,8 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
         if (!value.is_string()) fail_input("{}: allowed: the name of an image file", place);
         store(record, at, resolver.environment_map(value.get<std::string>(), where));
     } else {
-        fail_input("{}: the class's member {} has type {}, which no parameter can fill", place, p.member.name, type);
+        fail_input("{}: the class's member {} has type {}, which no parameter can fill", place, p.member.name,
+                   type);
     }
 }
 
@@ -96,32 +102,39 @@ glm::vec3 spectral_value(const json& value, const SceneDescription& scene, const
     if (value.is_number()) return glm::vec3(number(value));
     if (value.is_array() && value.size() == 3) return {number(value[0]), number(value[1]), number(value[2])};
     if (value.is_object() && value.contains("name")) {
-        const auto found = value["name"].is_string() ? scene.spectra.find(value["name"].get<std::string>()) : scene.spectra.end();
-        if (found == scene.spectra.end()) fail_input("{}: {} is not the name of a spectrum", place, value["name"].dump());
+        const auto found = value["name"].is_string() ? scene.spectra.find(value["name"].get<std::string>())
+                                                     : scene.spectra.end();
+        if (found == scene.spectra.end())
+            fail_input("{}: {} is not the name of a spectrum", place, value["name"].dump());
         // A named spectrum may not name another one: that could go round in circles.
         if (found->second.is_object() && found->second.contains("name"))
             fail_input("{}: the spectrum {} names another spectrum", place, value["name"].dump());
         return spectral_value(found->second, scene, where);
     }
     if (value.is_object())
-        fail_input("{}: tabulated spectra need spectral rendering, which this version does not have; allowed: a number or "
-                   "[r, g, b]", place);
+        fail_input(
+            "{}: tabulated spectra need spectral rendering, which this version does not have; allowed: a "
+            "number or "
+            "[r, g, b]",
+            place);
     fail_input("{}: not a spectral value; allowed: a number, [r, g, b] or {{\"name\": …}}", place);
 }
 
 std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescription& object,
-                                   const std::optional<glm::dmat4>& placement, const RecordResolver& resolver) {
+                                   const std::optional<glm::dmat4>& placement,
+                                   const RecordResolver& resolver) {
     std::vector<std::byte> record(info.stride);
     for (const auto& [name, value] : object.parameters.items()) {
-        const auto known = std::any_of(info.parameters.begin(), info.parameters.end(), [&, &name = name](const Parameter& p) {
-            return p.from_scene && p.member.name == name;
-        });
+        const auto known = std::any_of(
+            info.parameters.begin(), info.parameters.end(),
+            [&, &name = name](const Parameter& p) { return p.from_scene && p.member.name == name; });
         if (known) continue;
         std::string names;
         for (const Parameter& p : info.parameters)
             if (p.from_scene) names += (names.empty() ? "" : ", ") + p.member.name;
-        fail_input("{}/{}: unknown parameter of {} {}; allowed: {}", message_place(resolver.scene, object.where), name,
-                   interface_info(info.interface).name, info.name, names.empty() ? "none" : names);
+        fail_input("{}/{}: unknown parameter of {} {}; allowed: {}",
+                   message_place(resolver.scene, object.where), name, interface_info(info.interface).name,
+                   info.name, names.empty() ? "none" : names);
     }
     for (const Parameter& p : info.parameters) {
         if (p.member.type == "Placement") {
@@ -131,10 +144,11 @@ std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescriptio
         } else if (p.from_scene) {
             const bool given = object.parameters.contains(p.member.name);
             if (!given && p.required)
-                fail_input("{}: {} {} needs the parameter {}; {}", message_place(resolver.scene, object.where),
-                           interface_info(info.interface).name, info.name, p.member.name, p.text);
-            fill_parameter(p, given ? object.parameters[p.member.name] : p.default_value, object.where + "/" + p.member.name,
-                           resolver, record);
+                fail_input("{}: {} {} needs the parameter {}; {}",
+                           message_place(resolver.scene, object.where), interface_info(info.interface).name,
+                           info.name, p.member.name, p.text);
+            fill_parameter(p, given ? object.parameters[p.member.name] : p.default_value,
+                           object.where + "/" + p.member.name, resolver, record);
         }
     }
     return record;
@@ -176,9 +190,12 @@ std::string RecordBuffer::constant_members(const ClassInfo& info) const {
         if (!equal) continue;
         uint32_t bits;
         std::memcpy(&bits, &records[p.member.offset], 4);
-        if (type == "TextureRef" && bits == no_record) text += fmt::format("r.{}.index = NO_RECORD; ", p.member.name);
-        else if (p.default_value.is_boolean()) text += fmt::format("r.{} = {}; ", p.member.name, bits ? "true" : "false");
-        else if (type == "uint" || type == "int") text += fmt::format("r.{} = {}({}u); ", p.member.name, type, bits);
+        if (type == "TextureRef" && bits == no_record)
+            text += fmt::format("r.{}.index = NO_RECORD; ", p.member.name);
+        else if (p.default_value.is_boolean())
+            text += fmt::format("r.{} = {}; ", p.member.name, bits ? "true" : "false");
+        else if (type == "uint" || type == "int")
+            text += fmt::format("r.{} = {}({}u); ", p.member.name, type, bits);
         else if (type == "float" && (bits == 0 || bits == 0x3F800000u))
             text += fmt::format("r.{} = {}; ", p.member.name, bits ? "1.0" : "0.0");
     }

@@ -1,4 +1,5 @@
-// Records of scene objects, filled from the scene file's parameters by name, as the class's reflection describes them.
+// Records of scene objects, filled from the scene file's parameters by name, as the class's reflection
+// describes them.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -19,25 +20,28 @@ struct RecordResolver {
     std::map<std::string, uint32_t> media;  // name -> RecordRef
     // Index of the Texture for a glTF textureInfo; `color`: its image is sRGB.
     std::function<uint32_t(const nlohmann::json& info, bool color, const std::string& where)> texture;
-    std::function<EnvironmentMapRef(const std::filesystem::path& file, const std::string& where)> environment_map;
+    std::function<EnvironmentMapRef(const std::filesystem::path& file, const std::string& where)>
+        environment_map;
 };
 
 constexpr uint32_t no_record = 0xFFFFFFFFu;
 constexpr uint32_t record_ref(uint32_t tag, uint32_t index) { return tag << 24 | index; }
 
-// One record's bytes. `placement` (world_from_local) goes into members of type Placement. Unknown parameters, wrong types
-// and values out of range fail with file, JSON pointer, and what is allowed.
+// One record's bytes. `placement` (world_from_local) goes into members of type Placement. Unknown parameters,
+// wrong types and values out of range fail with file, JSON pointer, and what is allowed.
 std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescription& object,
-                                   const std::optional<glm::dmat4>& placement, const RecordResolver& resolver);
+                                   const std::optional<glm::dmat4>& placement,
+                                   const RecordResolver& resolver);
 
 // A spectral value of the scene format as linear Rec.709.
-glm::vec3 spectral_value(const nlohmann::json& value, const SceneDescription& scene, const std::string& where);
+glm::vec3 spectral_value(const nlohmann::json& value, const SceneDescription& scene,
+                         const std::string& where);
 
 // "FILE: /pointer": the start of a message about an object of the scene.
 std::string message_place(const SceneDescription& scene, const std::string& where);
 
-// The records of one interface in one buffer: each class's region starts at a multiple of its stride, so that all
-// classes can be typed views of the buffer's start.
+// The records of one interface in one buffer: each class's region starts at a multiple of its stride, so that
+// all classes can be typed views of the buffer's start.
 class RecordBuffer {
   public:
     void add(const ClassInfo& info, std::vector<std::byte> record);  // in any order
@@ -45,8 +49,8 @@ class RecordBuffer {
     uint32_t ref(const ClassInfo& info, uint32_t nth) const;
     uint32_t count(const ClassInfo& info) const;
     void layout();
-    // GLSL statements for class_header: switches (whole numbers, truth values, absent textures, numbers that are 0 or 1)
-    // that have the same value in all records of the class.
+    // GLSL statements for class_header: switches (whole numbers, truth values, absent textures, numbers that
+    // are 0 or 1) that have the same value in all records of the class.
     std::string constant_members(const ClassInfo& info) const;
     const std::vector<std::byte>& bytes() const { return bytes_; }
 

@@ -10,15 +10,19 @@
 namespace etendue {
 
 SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description, const SceneOptions& options)
-    : device_(device), in_(description), options_(options),
+    : device_(device),
+      in_(description),
+      options_(options),
       threads_(options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency())),
       resolver_{description, {}, {}, {}} {
     resolver_.texture = [this](const nlohmann::json& info, bool color, const std::string& where) {
         const auto content = color ? TextureContent::color : TextureContent::data;
-        return texture_index(textures_, parse_texture_info(info, content, in_.textures, message_place(in_, where)));
+        return texture_index(textures_,
+                             parse_texture_info(info, content, in_.textures, message_place(in_, where)));
     };
     resolver_.environment_map = [this](const std::filesystem::path& file, const std::string&) {
-        EnvironmentMap map = build_environment_map(read_image_file(file.is_absolute() ? file : in_.folder / file));
+        EnvironmentMap map =
+            build_environment_map(read_image_file(file.is_absolute() ? file : in_.folder / file));
         map.ref.first = uint32_t(environment_texels_.size());
         environment_texels_.insert(environment_texels_.end(), map.texels.begin(), map.texels.end());
         return map.ref;
@@ -32,7 +36,8 @@ Scene SceneCompiler::run() {
     out_.registry = std::make_unique<ClassRegistry>(out_.sources);
     add_class_files();
     for (const PlacedObject& element : in_.elements)
-        fail_input("{}: optical elements are not available in this version", message_place(in_, element.object.where));
+        fail_input("{}: optical elements are not available in this version",
+                   message_place(in_, element.object.where));
     add_media();
     add_materials();
     add_geometry();
@@ -49,17 +54,22 @@ Scene SceneCompiler::run() {
 void SceneCompiler::add_class_files() {
     for (const ClassFileDescription& file : in_.class_files) {
         const auto& interfaces = all_interfaces();
-        const auto found = std::find_if(interfaces.begin(), interfaces.end(), [&](auto& i) { return file.interface == i.name; });
+        const auto found = std::find_if(interfaces.begin(), interfaces.end(),
+                                        [&](auto& i) { return file.interface == i.name; });
         if (found == interfaces.end())
-            fail_input("{}/interface: there is no interface {}; allowed: geometry, light, receiver, surface, medium, element",
-                       message_place(in_, file.where), file.interface);
-        out_.registry->add_class_file(found->interface, file.file.is_absolute() ? file.file : in_.folder / file.file);
+            fail_input(
+                "{}/interface: there is no interface {}; allowed: geometry, light, receiver, surface, "
+                "medium, element",
+                message_place(in_, file.where), file.interface);
+        out_.registry->add_class_file(found->interface,
+                                      file.file.is_absolute() ? file.file : in_.folder / file.file);
     }
 }
 
 void SceneCompiler::add_media() {
     std::vector<Added> added;
-    for (const MediumDescription& medium : in_.media) added.push_back(add_record(Interface::medium, medium.medium));
+    for (const MediumDescription& medium : in_.media)
+        added.push_back(add_record(Interface::medium, medium.medium));
     const auto refs = references(Interface::medium, added);
     for (size_t i = 0; i < refs.size(); ++i) resolver_.media[in_.media[i].name] = refs[i];
     if (refs.empty()) return;
@@ -68,8 +78,8 @@ void SceneCompiler::add_media() {
     upload("MediumRecords", records_[Interface::medium].bytes());
     const Buffer in = create_buffer(device_, refs, "MediumRefs");
     const Buffer out(device_, refs.size() * 4, "MediumClarity");
-    run_once("kernels/measure_media.comp", uint32_t(refs.size()), {{"MediumRefs", &in}, {"MediumClarity", &out}},
-             {{"count", uint32_t(refs.size())}});
+    run_once("kernels/measure_media.comp", uint32_t(refs.size()),
+             {{"MediumRefs", &in}, {"MediumClarity", &out}}, {{"count", uint32_t(refs.size())}});
     for (uint32_t is_clear : out.read_array<uint32_t>(refs.size())) out_.features.media |= !is_clear;
 }
 
@@ -77,7 +87,8 @@ const ClassInfo& SceneCompiler::find_class(Interface interface, const ObjectDesc
     const ClassInfo* info = out_.registry->find(interface, object.class_name);
     if (!info) {
         std::string names;
-        for (const ClassInfo& known : out_.registry->classes(interface)) names += (names.empty() ? "" : ", ") + known.name;
+        for (const ClassInfo& known : out_.registry->classes(interface))
+            names += (names.empty() ? "" : ", ") + known.name;
         fail_input("{}/class: there is no {} class {}; allowed: {}", message_place(in_, object.where),
                    interface_info(interface).name, object.class_name, names.empty() ? "none" : names);
     }
@@ -87,12 +98,14 @@ const ClassInfo& SceneCompiler::find_class(Interface interface, const ObjectDesc
 const ClassInfo& SceneCompiler::use_class(Interface interface, const ObjectDescription& object) {
     const ClassInfo* info = &find_class(interface, object);
     auto& used = out_.classes[interface];
-    const auto place = std::lower_bound(used.begin(), used.end(), info, [](auto* a, auto* b) { return a->tag < b->tag; });
+    const auto place =
+        std::lower_bound(used.begin(), used.end(), info, [](auto* a, auto* b) { return a->tag < b->tag; });
     if (place == used.end() || *place != info) used.insert(place, info);
     return *info;
 }
 
-SceneCompiler::Added SceneCompiler::add_record(Interface interface, const ObjectDescription& object, const std::optional<glm::dmat4>& placement) {
+SceneCompiler::Added SceneCompiler::add_record(Interface interface, const ObjectDescription& object,
+                                               const std::optional<glm::dmat4>& placement) {
     const ClassInfo& info = use_class(interface, object);
     RecordBuffer& records = records_[interface];
     records.add(info, fill_record(info, object, placement, resolver_));
@@ -110,14 +123,16 @@ void SceneCompiler::write_headers() {
     for (const InterfaceInfo& interface : all_interfaces()) {
         const auto& classes = out_.classes[interface.interface];
         std::map<std::string, std::string> constants;
-        for (const ClassInfo* info : classes) constants[info->name] = records_[interface.interface].constant_members(*info);
+        for (const ClassInfo* info : classes)
+            constants[info->name] = records_[interface.interface].constant_members(*info);
         out_.sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] =
             class_header(interface, classes, constants);
     }
     for (const auto& [name, text] : out_.registry->sources().generated) out_.sources.generated[name] = text;
 }
 
-void SceneCompiler::run_once(const std::string& file, uint32_t items, const BufferTable& buffers, std::initializer_list<PushValue> values) {
+void SceneCompiler::run_once(const std::string& file, uint32_t items, const BufferTable& buffers,
+                             std::initializer_list<PushValue> values) {
     const Kernel kernel = make_kernel(device_, out_, file, buffers);
     CommandList list(device_);
     list.dispatch(kernel, (items + kernel.group_size() - 1) / kernel.group_size(), values);

@@ -1,5 +1,5 @@
-// A scene ready to render: records, hierarchies and textures in device buffers, and the headers that make kernels hold
-// only the classes and features the scene uses.
+// A scene ready to render: records, hierarchies and textures in device buffers, and the headers that make
+// kernels hold only the classes and features the scene uses.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -33,16 +33,16 @@ struct KernelReport {
 
 struct Scene {
     Features features;
-    ShaderSources sources;                                // with the generated headers
+    ShaderSources sources;                                       // with the generated headers
     std::map<Interface, std::vector<const ClassInfo*>> classes;  // in use
     std::unique_ptr<ClassRegistry> registry;
     std::map<std::string, Buffer> buffers;
     std::vector<Receiver> receivers;
     std::vector<std::string> warnings;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;
-    glm::dvec3 center{0};     // of the device's world coordinates
-    float radius = 0;         // m, of a sphere around everything
-    double power = 0;         // of all lights, lm
+    glm::dvec3 center{0};  // of the device's world coordinates
+    float radius = 0;      // m, of a sphere around everything
+    double power = 0;      // of all lights, lm
     double bvh_seconds = 0, bvh_cost = 0;
     uint32_t bvh_depth = 0;
     std::filesystem::path cache_folder;
@@ -50,11 +50,11 @@ struct Scene {
 };
 
 struct SceneOptions {
-    std::filesystem::path shaders;      // folder of shaders instead of the embedded ones
-    std::filesystem::path environment;  // image that takes the place of the scene's environment
-    std::filesystem::path cache_folder; // of compiled kernels; empty = none
-    unsigned threads = 0;               // for building; 0 = all
-    uint64_t binding_bytes = 0;         // arrays above this are read by address; 0 = what the device can bind
+    std::filesystem::path shaders;       // folder of shaders instead of the embedded ones
+    std::filesystem::path environment;   // image that takes the place of the scene's environment
+    std::filesystem::path cache_folder;  // of compiled kernels; empty = none
+    unsigned threads = 0;                // for building; 0 = all
+    uint64_t binding_bytes = 0;  // arrays above this are read by address; 0 = what the device can bind
 };
 
 // Errors: fail_input for what is wrong in the scene, fail_device for what the device cannot hold.

@@ -1,5 +1,6 @@
-// Builds a Scene from its description, step by step; each step needs what the ones before it made. Internal to
-// compile_scene: the steps stand in scene.cpp, scene_materials.cpp, scene_geometry.cpp and scene_lights.cpp.
+// Builds a Scene from its description, step by step; each step needs what the ones before it made. Internal
+// to compile_scene: the steps stand in scene.cpp, scene_materials.cpp, scene_geometry.cpp and
+// scene_lights.cpp.
 #pragma once
 #include "host/scene/light_tree.h"
 #include "host/scene/scene.h"
@@ -33,10 +34,12 @@ class SceneCompiler {
         const ClassInfo* info;
         uint32_t nth;
     };
-    Added add_record(Interface interface, const ObjectDescription& object, const std::optional<glm::dmat4>& placement = {});
+    Added add_record(Interface interface, const ObjectDescription& object,
+                     const std::optional<glm::dmat4>& placement = {});
     std::vector<uint32_t> references(Interface interface, const std::vector<Added>& added);
     // One dispatch of a kernel that asks the classes something, a lane an item.
-    void run_once(const std::string& file, uint32_t items, const BufferTable& buffers, std::initializer_list<PushValue> values);
+    void run_once(const std::string& file, uint32_t items, const BufferTable& buffers,
+                  std::initializer_list<PushValue> values);
 
     // scene_materials.cpp
     void add_materials();
@@ -65,11 +68,13 @@ class SceneCompiler {
         out_.buffers[name] = create_buffer(device_, data, name);
     }
 
-    // An array that may exceed a binding: its address goes into the buffer LargeArrays (lib/large_arrays.glsl).
+    // An array that may exceed a binding: its address goes into the buffer LargeArrays
+    // (lib/large_arrays.glsl).
     template <class T>
     void upload_large(const std::string& name, const std::vector<T>& data, uint32_t slot, bool& by_address) {
         upload(name, data);
-        const uint64_t limit = options_.binding_bytes ? options_.binding_bytes : device_.description.max_buffer_range;
+        const uint64_t limit =
+            options_.binding_bytes ? options_.binding_bytes : device_.description.max_buffer_range;
         by_address = out_.buffers[name].bytes() > limit;
         large_arrays_[slot] = out_.buffers[name].address();
         upload("LargeArrays", std::vector<uint64_t>(large_arrays_, large_arrays_ + 6));

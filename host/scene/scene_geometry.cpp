@@ -16,7 +16,8 @@ glm::dmat4 SceneCompiler::recentred(const glm::dmat4& world_from_local) const {
 
 void SceneCompiler::add_geometry() {
     std::vector<Added> shapes;
-    for (const PlacedObject& shape : in_.shapes) shapes.push_back(add_record(Interface::geometry, shape.object));
+    for (const PlacedObject& shape : in_.shapes)
+        shapes.push_back(add_record(Interface::geometry, shape.object));
     const auto refs = references(Interface::geometry, shapes);
     world_ = build_world(in_, shape_bounds(refs), refs, threads_, out_.features);
     const UnrolledTraversal unrolled = unroll_traversal(world_, in_);
@@ -63,13 +64,16 @@ void SceneCompiler::add_receivers() {
         out_.receivers.push_back({receiver.name, no_record, aspect});
     }
     if (in_.receivers.empty() && out_.radius > 0) {
-        // glTF leaves the view to the program where a file has no camera: the whole scene from the front, a little above.
+        // glTF leaves the view to the program where a file has no camera: the whole scene from the front, a
+        // little above.
         const double yfov = 0.6;
-        const glm::dvec3 from = glm::normalize(glm::dvec3(0.35, 0.25, 1.0)) * (double(out_.radius) / std::sin(yfov / 2));
+        const glm::dvec3 from =
+            glm::normalize(glm::dvec3(0.35, 0.25, 1.0)) * (double(out_.radius) / std::sin(yfov / 2));
         const glm::dmat4 placement = glm::inverse(glm::lookAt(from, glm::dvec3(0), glm::dvec3(0, 1, 0)));
         added.push_back(add_record(Interface::receiver, {"perspective", {{"yfov", yfov}}, ""}, placement));
         out_.receivers.push_back({"(default)", no_record, 0});
-        out_.warnings.push_back(fmt::format("{}: the scene has no camera: all of it is shown from the front", in_.file.string()));
+        out_.warnings.push_back(
+            fmt::format("{}: the scene has no camera: all of it is shown from the front", in_.file.string()));
     }
     const auto refs = references(Interface::receiver, added);
     for (size_t i = 0; i < refs.size(); ++i) out_.receivers[i].ref = refs[i];

@@ -24,7 +24,8 @@ std::vector<std::byte> area_record(const ClassInfo& info, uint32_t primitive, ui
 void SceneCompiler::add_lights() {
     std::vector<Added> finite, infinite;
     if (!options_.environment.empty()) {
-        ObjectDescription image{"image", {{"file", std::filesystem::absolute(options_.environment).string()}}, "--environment"};
+        ObjectDescription image{
+            "image", {{"file", std::filesystem::absolute(options_.environment).string()}}, "--environment"};
         infinite.push_back(add_record(Interface::light, image));
     } else if (in_.environment) {
         infinite.push_back(add_record(Interface::light, *in_.environment));
@@ -36,7 +37,8 @@ void SceneCompiler::add_lights() {
     for (uint32_t i = 0; i < world_.world_primitives; ++i) {
         const PrimitiveRecord& p = world_.primitives[i];
         const glm::vec4 e = materials_[p.material].emission;
-        if (primitive_kind(p) != PrimitiveKind::instance && (e.x > 0 || e.y > 0 || e.z > 0)) area_primitives_.push_back(i);
+        if (primitive_kind(p) != PrimitiveKind::instance && (e.x > 0 || e.y > 0 || e.z > 0))
+            area_primitives_.push_back(i);
     }
     drop_dark_triangles(area_primitives_);
     std::vector<Added> area;
@@ -62,9 +64,12 @@ void SceneCompiler::drop_dark_triangles(std::vector<uint32_t>& primitives) {
     std::erase_if(primitives, [&](uint32_t i) {
         const PrimitiveRecord& p = world_.primitives[i];
         const uint32_t index = materials_[p.material].emission_texture;
-        if (index == no_record || primitive_kind(p) != PrimitiveKind::triangle || world_.triangle_indices.empty()) return false;
+        if (index == no_record || primitive_kind(p) != PrimitiveKind::triangle ||
+            world_.triangle_indices.empty())
+            return false;
         const TextureUse& use = textures_[index];
-        const EmissionTexture& texture = textures.try_emplace(index, in_.images[use.image], use).first->second;
+        const EmissionTexture& texture =
+            textures.try_emplace(index, in_.images[use.image], use).first->second;
         const glm::uvec3 t = world_.triangle_indices[p.attributes & 0x3FFFFFFFu];
         const VertexRecord &a = world_.vertices[t.x], &b = world_.vertices[t.y], &c = world_.vertices[t.z];
         const glm::vec2 uv0[3] = {a.uv0, b.uv0, c.uv0}, uv1[3] = {a.uv1, b.uv1, c.uv1};
@@ -72,8 +77,8 @@ void SceneCompiler::drop_dark_triangles(std::vector<uint32_t>& primitives) {
     });
 }
 
-// Power and extent of every light, found out by the classes on the device; then the order of the list, the tree, and the scale of
-// materials whose emission is given as the power of the whole object.
+// Power and extent of every light, found out by the classes on the device; then the order of the list, the
+// tree, and the scale of materials whose emission is given as the power of the whole object.
 void SceneCompiler::measure_lights() {
     for (const InterfaceInfo& interface : all_interfaces())
         upload(interface.buffer, records_[interface.interface].bytes());
@@ -99,7 +104,8 @@ void SceneCompiler::measure_lights() {
         sorted_lights.push_back(lights_[i]);
         sorted_bounds.push_back(bounds[i]);
         out_.power += bounds[i].power;
-        if (i >= first_area_light_) world_.primitives[area_primitives_[i - first_area_light_]].light = position;
+        if (i >= first_area_light_)
+            world_.primitives[area_primitives_[i - first_area_light_]].light = position;
     }
     const LightTree tree = build_light_tree(sorted_bounds);
     out_.features.light_tree = tree.is_tree;
@@ -107,7 +113,8 @@ void SceneCompiler::measure_lights() {
     upload("Lights", sorted_lights);
     upload("LightNodes", tree.nodes);
     upload("LightTrails", tree.trails);
-    out_.buffers["Primitives"].write(world_.primitives.data(), world_.primitives.size() * sizeof(PrimitiveRecord));
+    out_.buffers["Primitives"].write(world_.primitives.data(),
+                                     world_.primitives.size() * sizeof(PrimitiveRecord));
 }
 
 std::vector<LightBounds> SceneCompiler::run_measurement() {
@@ -127,8 +134,10 @@ void SceneCompiler::scale_powers(std::vector<LightBounds>& bounds) {
     bool changed = false;
     for (size_t m = 0; m < materials_.size(); ++m) {
         const auto& e = in_.materials[m].emission;
-        if (!e || totals[m] <= 0 || (e->quantity != Quantity::power && e->quantity != Quantity::flux)) continue;
-        const double wanted = glm::dot(spectral_value(e->value, in_, e->where), glm::vec3(0.2126f, 0.7152f, 0.0722f));
+        if (!e || totals[m] <= 0 || (e->quantity != Quantity::power && e->quantity != Quantity::flux))
+            continue;
+        const double wanted =
+            glm::dot(spectral_value(e->value, in_, e->where), glm::vec3(0.2126f, 0.7152f, 0.0722f));
         scales[m] = float(wanted / totals[m]);
         materials_[m].emission *= scales[m];
         materials_[m].mean_emission *= scales[m];

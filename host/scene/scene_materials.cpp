@@ -8,7 +8,8 @@ namespace etendue {
 uint32_t SceneCompiler::medium_ref(const std::string& name, const std::string& where) {
     if (name.empty()) return no_record;
     const auto found = resolver_.media.find(name);
-    if (found == resolver_.media.end()) fail_input("{}: {} is not the name of a medium", message_place(in_, where), name);
+    if (found == resolver_.media.end())
+        fail_input("{}: {} is not the name of a medium", message_place(in_, where), name);
     return found->second;
 }
 
@@ -32,7 +33,8 @@ void SceneCompiler::add_materials() {
         if (!m.inside.empty() || !m.outside.empty()) record.flags |= separates_media;
         record.emission_texture = record.normal_texture = no_record;
         if (m.normal_texture.is_object()) {
-            record.normal_texture = resolver_.texture(m.normal_texture, false, m.surface.where + "/normalTexture");
+            record.normal_texture =
+                resolver_.texture(m.normal_texture, false, m.surface.where + "/normalTexture");
             record.normal_scale = m.normal_texture.value("scale", 1.0f);
             out_.features.normal_maps = true;
         }
@@ -63,8 +65,10 @@ void SceneCompiler::ask_opacity() {
     run_once("kernels/measure_materials.comp", count, {{"MaterialOpacity", &out}}, {{"count", count}});
     const auto is_opaque = out.read_array<uint32_t>(count);
     for (uint32_t i = 0; i < count; ++i) {
-        if (is_opaque[i]) materials_[i].flags |= opaque;
-        else out_.features.straight = true;
+        if (is_opaque[i])
+            materials_[i].flags |= opaque;
+        else
+            out_.features.straight = true;
     }
 }
 
@@ -80,11 +84,13 @@ void SceneCompiler::fill_emission(const EmissionDescription& e, MaterialRecord& 
         }
         value *= spectrum;
     }
-    if (glm::any(glm::lessThan(value, glm::vec3(0)))) fail_input("{}: emission must not be negative", message_place(in_, e.where));
+    if (glm::any(glm::lessThan(value, glm::vec3(0))))
+        fail_input("{}: emission must not be negative", message_place(in_, e.where));
     record.emission = record.mean_emission = glm::vec4(value, 0);
     if (e.texture.is_object()) {
         record.emission_texture = resolver_.texture(e.texture, true, e.where);
-        record.mean_emission *= glm::vec4(mean_color(in_.images[textures_[record.emission_texture].image]), 0);
+        record.mean_emission *=
+            glm::vec4(mean_color(in_.images[textures_[record.emission_texture].image]), 0);
     }
 }
 

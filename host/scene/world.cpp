@@ -12,18 +12,23 @@
 namespace etendue {
 namespace {
 
-constexpr uint64_t small_mesh_triangles = 65536;  // all copies of a mesh together: merged rather than instanced
+constexpr uint64_t small_mesh_triangles =
+    65536;  // all copies of a mesh together: merged rather than instanced
 
 bool has_attributes(const MeshDescription& mesh) {
-    return !mesh.normals.empty() || !mesh.tangents.empty() || !mesh.uv0.empty() || !mesh.uv1.empty() || !mesh.colors.empty();
+    return !mesh.normals.empty() || !mesh.tangents.empty() || !mesh.uv0.empty() || !mesh.uv1.empty() ||
+           !mesh.colors.empty();
 }
 
-glm::vec3 transform_point(const glm::dmat4& m, const glm::vec3& p) { return glm::vec3(m * glm::dvec4(p, 1.0)); }
+glm::vec3 transform_point(const glm::dmat4& m, const glm::vec3& p) {
+    return glm::vec3(m * glm::dvec4(p, 1.0));
+}
 
 void grow_transformed(Box& box, const glm::dmat4& m, const Box& local) {
     for (int corner = 0; corner < 8; ++corner)
-        box.grow(transform_point(m, {corner & 1 ? local.hi.x : local.lo.x, corner & 2 ? local.hi.y : local.lo.y,
-                                     corner & 4 ? local.hi.z : local.lo.z}));
+        box.grow(
+            transform_point(m, {corner & 1 ? local.hi.x : local.lo.x, corner & 2 ? local.hi.y : local.lo.y,
+                                corner & 4 ? local.hi.z : local.lo.z}));
 }
 
 // Outward by a rounding step, so that float boxes hold what the doubles say.
@@ -50,7 +55,8 @@ Box triangle_box(const PrimitiveRecord& p) {
 
 class Builder {
   public:
-    Builder(const SceneDescription& scene, World& world, unsigned threads) : scene_(scene), world_(world), threads_(threads) {}
+    Builder(const SceneDescription& scene, World& world, unsigned threads)
+        : scene_(scene), world_(world), threads_(threads) {}
 
     // The mesh's vertices as attributes of the device; returns the index of the first.
     uint32_t add_vertices(const MeshDescription& mesh, const glm::dmat4& world_from_local) {
@@ -72,34 +78,39 @@ class Builder {
             }
             if (!mesh.uv0.empty()) v.uv0 = mesh.uv0[i];
             if (!mesh.uv1.empty()) v.uv1 = mesh.uv1[i];
-            v.color = mesh.colors.empty() ? 0xFFFFFFFFu : glm::packUnorm4x8(glm::clamp(mesh.colors[i], 0.0f, 1.0f));
+            v.color =
+                mesh.colors.empty() ? 0xFFFFFFFFu : glm::packUnorm4x8(glm::clamp(mesh.colors[i], 0.0f, 1.0f));
             world_.vertices.push_back(v);
         }
         return first;
     }
 
     // Appends the mesh's triangles, in the frame that `to_frame` leads to.
-    void add_triangles(const MeshDescription& mesh, const glm::dmat4& to_frame, std::vector<PrimitiveRecord>& out) {
+    void add_triangles(const MeshDescription& mesh, const glm::dmat4& to_frame,
+                       std::vector<PrimitiveRecord>& out) {
         const bool attributes = has_attributes(mesh);
         if (attributes && world_.vertices.empty()) world_.vertices.push_back({{}, 0xFFFFFFFFu, {}, {}, {}});
         const uint32_t first_vertex = attributes ? add_vertices(mesh, to_frame) : 0;
         const bool mirrored = glm::determinant(glm::dmat3(to_frame)) < 0;
         std::vector<glm::vec3> positions(mesh.positions.size());
-        for (size_t i = 0; i < positions.size(); ++i) positions[i] = transform_point(to_frame, mesh.positions[i]);
+        for (size_t i = 0; i < positions.size(); ++i)
+            positions[i] = transform_point(to_frame, mesh.positions[i]);
         out.reserve(out.size() + mesh.triangles.size());
         for (glm::uvec3 t : mesh.triangles) {
             if (mirrored) std::swap(t.y, t.z);  // the front stays the front
             PrimitiveRecord p{positions[t.x], mesh.material, positions[t.y], no_record, positions[t.z], 0};
             if (triangle_area_vanishes(p)) continue;
             p.attributes = uint32_t(world_.triangle_indices.size());
-            if (keep_indices_) world_.triangle_indices.push_back(attributes ? t + first_vertex : glm::uvec3(0));
+            if (keep_indices_)
+                world_.triangle_indices.push_back(attributes ? t + first_vertex : glm::uvec3(0));
             out.push_back(p);
         }
         world_.triangles += mesh.triangles.size();
     }
 
     // A tree over `primitives`, which are appended to the world's in leaf order. Returns the tree's header.
-    uint32_t add_tree(const std::vector<PrimitiveRecord>& primitives, const std::vector<Box>& boxes, NodeFormat format) {
+    uint32_t add_tree(const std::vector<PrimitiveRecord>& primitives, const std::vector<Box>& boxes,
+                      NodeFormat format) {
         const Bvh bvh = build_bvh(boxes, threads_);
         const uint32_t first = uint32_t(world_.primitives.size());
         const uint32_t header = encode_bvh(bvh, format, first, world_.nodes);
@@ -148,13 +159,15 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
     glm::dvec3 lo(INFINITY), hi(-INFINITY);
     const auto grow = [&](const glm::dmat4& m, const Box& box) {
         for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 p = m * glm::dvec4(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                                                corner & 4 ? box.hi.z : box.lo.z, 1);
+            const glm::dvec3 p =
+                m * glm::dvec4(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                               corner & 4 ? box.hi.z : box.lo.z, 1);
             lo = glm::min(lo, p), hi = glm::max(hi, p);
         }
     };
     for (const MeshInstance& instance : scene.instances)
-        if (!local_bounds[instance.mesh].empty()) grow(instance.world_from_local, local_bounds[instance.mesh]);
+        if (!local_bounds[instance.mesh].empty())
+            grow(instance.world_from_local, local_bounds[instance.mesh]);
     for (size_t i = 0; i < scene.shapes.size(); ++i) grow(scene.shapes[i].world_from_local, shape_bounds[i]);
     if (lo.x <= hi.x) world.center = 0.5 * (lo + hi);
     const glm::dmat4 recentre = glm::translate(glm::dmat4(1.0), -world.center);
@@ -165,21 +178,23 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
         return uses[mesh] == 1 || scene.materials[scene.meshes[mesh].material].emission ||
                scene.meshes[mesh].triangles.size() * uint64_t(uses[mesh]) <= small_mesh_triangles;
     };
-    features.vertex_attributes = std::any_of(scene.instances.begin(), scene.instances.end(), [&](const MeshInstance& i) {
-        return has_attributes(scene.meshes[i.mesh]);
-    });
+    features.vertex_attributes =
+        std::any_of(scene.instances.begin(), scene.instances.end(),
+                    [&](const MeshInstance& i) { return has_attributes(scene.meshes[i.mesh]); });
     builder.keep_indices(features.vertex_attributes);
 
     std::vector<PrimitiveRecord> primitives;
     for (const MeshInstance& instance : scene.instances)
         if (merged(instance.mesh))
-            builder.add_triangles(scene.meshes[instance.mesh], recentre * instance.world_from_local, primitives);
+            builder.add_triangles(scene.meshes[instance.mesh], recentre * instance.world_from_local,
+                                  primitives);
     std::vector<Box> boxes;
     boxes.reserve(primitives.size());
     for (const PrimitiveRecord& p : primitives) boxes.push_back(triangle_box(p));
     features.triangles = !primitives.empty();
 
-    const auto place = [&](const glm::dmat4& world_from_local, PrimitiveKind kind, uint32_t word, uint32_t material, const Box& local) {
+    const auto place = [&](const glm::dmat4& world_from_local, PrimitiveKind kind, uint32_t word,
+                           uint32_t material, const Box& local) {
         PrimitiveRecord p{};
         p.v0.x = std::bit_cast<float>(word);
         p.v0.y = std::bit_cast<float>(uint32_t(world.transforms.size()));
@@ -193,14 +208,15 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
         world.transforms.push_back(transform_record(world_from_local));
     };
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
-        place(recentre * scene.shapes[i].world_from_local, PrimitiveKind::shape, shape_refs[i], scene.shapes[i].material,
-              shape_bounds[i]);
+        place(recentre * scene.shapes[i].world_from_local, PrimitiveKind::shape, shape_refs[i],
+              scene.shapes[i].material, shape_bounds[i]);
         features.shapes = true;
     }
     // Instances point to the header of their mesh's tree, which is built behind the world's: patched below.
     for (const MeshInstance& instance : scene.instances)
         if (!merged(instance.mesh) && !local_bounds[instance.mesh].empty()) {
-            place(recentre * instance.world_from_local, PrimitiveKind::instance, instance.mesh, 0, local_bounds[instance.mesh]);
+            place(recentre * instance.world_from_local, PrimitiveKind::instance, instance.mesh, 0,
+                  local_bounds[instance.mesh]);
             features.instances = true;
             ++world.instances;
         }
@@ -222,7 +238,8 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
     }
     for (uint32_t i = 0; i < world.world_primitives; ++i)
         if (primitive_kind(world.primitives[i]) == PrimitiveKind::instance)
-            world.primitives[i].v0.x = std::bit_cast<float>(headers[std::bit_cast<uint32_t>(world.primitives[i].v0.x)]);
+            world.primitives[i].v0.x =
+                std::bit_cast<float>(headers[std::bit_cast<uint32_t>(world.primitives[i].v0.x)]);
     return world;
 }
 

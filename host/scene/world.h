@@ -1,8 +1,9 @@
-// The scene's geometry as the device holds it: one hierarchy over world triangles, analytic shapes and instances.
+// The scene's geometry as the device holds it: one hierarchy over world triangles, analytic shapes and
+// instances.
 //
-// Meshes used once, or emissive, or small, are transformed to world space and merged; the others keep a hierarchy of
-// their own and are placed by instances. World coordinates are relative to `center`, so that a scene far from its
-// origin keeps its digits.
+// Meshes used once, or emissive, or small, are transformed to world space and merged; the others keep a
+// hierarchy of their own and are placed by instances. World coordinates are relative to `center`, so that a
+// scene far from its origin keeps its digits.
 #pragma once
 #include <functional>
 #include <glm/glm.hpp>
@@ -14,7 +15,8 @@
 
 namespace etendue {
 
-// Twins of structs in shaders/geometry/triangle.glsl, lib/bvh.glsl and lib/primitives.glsl; a test compares the layouts.
+// Twins of structs in shaders/geometry/triangle.glsl, lib/bvh.glsl and lib/primitives.glsl; a test compares
+// the layouts.
 struct PrimitiveRecord {
     glm::vec3 v0;
     uint32_t material;
@@ -42,15 +44,16 @@ struct World {
     std::vector<TransformRecord> transforms;
     std::vector<VertexRecord> vertices;
     std::vector<glm::uvec3> triangle_indices;
-    uint64_t triangles = 0;   // in memory
-    uint64_t instances = 0;   // placed meshes that kept their own hierarchy
-    BvhStatistics statistics; // of the world's tree; seconds of all
+    uint64_t triangles = 0;    // in memory
+    uint64_t instances = 0;    // placed meshes that kept their own hierarchy
+    BvhStatistics statistics;  // of the world's tree; seconds of all
 };
 
 enum class PrimitiveKind : uint32_t { triangle = 0, shape = 1, instance = 2 };
 constexpr PrimitiveKind primitive_kind(const PrimitiveRecord& p) { return PrimitiveKind(p.attributes >> 30); }
 
-// `shape_bounds`: local boxes of scene.shapes. `shape_refs`: RecordRefs of their geometries. Sets the geometry's features.
+// `shape_bounds`: local boxes of scene.shapes. `shape_refs`: RecordRefs of their geometries. Sets the
+// geometry's features.
 World build_world(const SceneDescription& scene, const std::vector<Box>& shape_bounds,
                   const std::vector<uint32_t>& shape_refs, unsigned threads, Features& features);
 

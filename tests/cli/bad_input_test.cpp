@@ -37,7 +37,8 @@ void check(const std::vector<BadInput>& inputs) {
         const auto entries = [&] {
             Words names;
             for (const auto& entry : std::filesystem::directory_iterator(program.folder.path))
-                if (const std::string name = entry.path().filename(); !name.starts_with("std")) names.push_back(name);
+                if (const std::string name = entry.path().filename(); !name.starts_with("std"))
+                    names.push_back(name);
             std::sort(names.begin(), names.end());
             return names;
         };
@@ -67,17 +68,44 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
         {"an empty file", render, 2, {"s.gltf"}, ""},
         {"cut short", render, 2, {"s.gltf"}, small_scene().substr(0, 200)},
         {"nothing in it", render, 2, {"s.gltf", "empty"}, R"({"asset": {"version": "2.0"}})"},
-        {"a .glb cut short", {"render", "s.glb", "-o", "out.exr"}, 2, {"s.glb"}, "",
-         [](Program& p) { write_text(p.folder / "s.glb", std::string("glTF\2\0\0\0\0\1\0\0\x40\0\0\0JSON{\"asset\"", 28)); }},
-        {"an unknown class", render, 2, {"s.gltf", "/materials/0", "velvet", "lambertian"}, small_scene(R"({"class": "velvet"})")},
-        {"an unknown parameter", render, 2, {"s.gltf", "/materials/0", "shininess", "reflectance"},
+        {"a .glb cut short",
+         {"render", "s.glb", "-o", "out.exr"},
+         2,
+         {"s.glb"},
+         "",
+         [](Program& p) {
+             write_text(p.folder / "s.glb", std::string("glTF\2\0\0\0\0\1\0\0\x40\0\0\0JSON{\"asset\"", 28));
+         }},
+        {"an unknown class",
+         render,
+         2,
+         {"s.gltf", "/materials/0", "velvet", "lambertian"},
+         small_scene(R"({"class": "velvet"})")},
+        {"an unknown parameter",
+         render,
+         2,
+         {"s.gltf", "/materials/0", "shininess", "reflectance"},
          small_scene(R"({"class": "lambertian", "shininess": 1})")},
-        {"a wrong type", render, 2, {"s.gltf", "/materials/0", "alpha"}, small_scene(R"({"class": "conductor", "alpha": "smooth"})")},
-        {"a value out of range", render, 2, {"s.gltf", "/materials/0", "alpha", "[0, 1]"},
+        {"a wrong type",
+         render,
+         2,
+         {"s.gltf", "/materials/0", "alpha"},
+         small_scene(R"({"class": "conductor", "alpha": "smooth"})")},
+        {"a value out of range",
+         render,
+         2,
+         {"s.gltf", "/materials/0", "alpha", "[0, 1]"},
          small_scene(R"({"class": "conductor", "alpha": 2})")},
-        {"a reflectance above 1", render, 2, {"s.gltf", "/materials/0", "reflectance"},
+        {"a reflectance above 1",
+         render,
+         2,
+         {"s.gltf", "/materials/0", "reflectance"},
          small_scene(R"({"class": "lambertian", "reflectance": [0.5, 1.5, 0.5]})")},
-        {"a radius of zero", render, 2, {"s.gltf", "/nodes/0", "radius"}, small_scene(R"({"class": "lambertian"})", "0")},
+        {"a radius of zero",
+         render,
+         2,
+         {"s.gltf", "/nodes/0", "radius"},
+         small_scene(R"({"class": "lambertian"})", "0")},
         {"a number too large", render, 2, {"s.gltf"}, small_scene(R"({"class": "lambertian"})", "1e999")},
     });
 }
@@ -87,7 +115,11 @@ TEST_CASE("bad options and files beside the scene are one line, and nothing is w
         {"no such receiver", with({"--receiver", "ear"}), 2, {"ear", "eye"}},
         {"output folder missing", {"render", "s.gltf", "-o", "no/folder/x.exr"}, 2, {"no/folder"}},
         {"output not .exr", {"render", "s.gltf", "-o", "x.png"}, 2, {"x.png", ".exr"}},
-        {"output a folder", {"render", "s.gltf", "-o", "dir.exr"}, 2, {"dir.exr"}, small_scene(),
+        {"output a folder",
+         {"render", "s.gltf", "-o", "dir.exr"},
+         2,
+         {"dir.exr"},
+         small_scene(),
          [](Program& p) { std::filesystem::create_directory(p.folder / "dir.exr"); }},
         {"stats that cannot be written", with({"--stats", "no/folder/s.json"}), 2, {"no/folder"}},
         {"checkpoint that cannot be written", with({"--checkpoint", "no/folder/state"}), 2, {"no/folder"}},
@@ -111,10 +143,22 @@ TEST_CASE("bad options and files beside the scene are one line, and nothing is w
 TEST_CASE("without a usable device the exit code is 3, and nothing is written") {
     check({
         {"no such device", with({"--device", "no such card"}), 3, {"no such card"}},
-        {"no Vulkan device", render, 3, {"Vulkan"}, small_scene(),
-         [](Program& p) { p.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}}; }},
-        {"no Vulkan device to list", {"devices"}, 3, {"Vulkan"}, small_scene(),
-         [](Program& p) { p.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}}; }},
+        {"no Vulkan device",
+         render,
+         3,
+         {"Vulkan"},
+         small_scene(),
+         [](Program& p) {
+             p.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}};
+         }},
+        {"no Vulkan device to list",
+         {"devices"},
+         3,
+         {"Vulkan"},
+         small_scene(),
+         [](Program& p) {
+             p.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}};
+         }},
     });
 }
 

@@ -44,7 +44,8 @@ struct Program {
         const int out = open((folder / "stdout.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
         const int err = open((folder / "stderr.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
         const int in = open("/dev/null", O_RDONLY);
-        if (chdir(folder.path.c_str()) != 0 || dup2(in, 0) < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(127);
+        if (chdir(folder.path.c_str()) != 0 || dup2(in, 0) < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0)
+            _exit(127);
         execv(program.c_str(), arguments.data());
         _exit(127);
     }
@@ -63,12 +64,15 @@ struct Program {
 };
 
 // A sphere in a constant environment: the least that renders.
-inline std::string small_scene(const std::string& surface = R"({"class": "lambertian"})", const std::string& radius = "1") {
+inline std::string small_scene(const std::string& surface = R"({"class": "lambertian"})",
+                               const std::string& radius = "1") {
     return R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "scene": 0, "scenes": [{"nodes": [0, 1]}],
-"nodes": [{"name": "ball", "extensions": {"ETD_optics": {"geometry": {"class": "sphere", "radius": )" + radius +
+"nodes": [{"name": "ball", "extensions": {"ETD_optics": {"geometry": {"class": "sphere", "radius": )" +
+           radius +
            R"(, "material": 0}}}},
           {"name": "eye", "camera": 0, "translation": [0, 0, 5]}],
-"materials": [{"extensions": {"ETD_optics": {"surface": )" + surface + R"(}}}],
+"materials": [{"extensions": {"ETD_optics": {"surface": )" +
+           surface + R"(}}}],
 "cameras": [{"type": "perspective", "perspective": {"yfov": 0.6, "aspectRatio": 2, "znear": 0.1}}],
 "extensions": {"ETD_optics": {"environment": {"class": "constant", "radiance": 1}}}})";
 }

@@ -8,7 +8,8 @@ using namespace etendue;
 
 namespace {
 
-const std::vector<std::string> render = {"render", "s.gltf", "-o", "out.exr", "--size", "16x8", "--seed", "7"};
+const std::vector<std::string> render = {"render", "s.gltf", "-o",     "out.exr",
+                                         "--size", "16x8",   "--seed", "7"};
 
 std::vector<std::string> with(std::vector<std::string> more) {
     std::vector<std::string> words = render;
@@ -17,8 +18,12 @@ std::vector<std::string> with(std::vector<std::string> more) {
 }
 
 double number(const Image& image, const char* name) { return std::get<double>(image.attributes.at(name)); }
-std::string text(const Image& image, const char* name) { return std::get<std::string>(image.attributes.at(name)); }
-std::span<const float> channel(const Image& image, const char* name) { return plane(image, size_t(find_channel(image, name))); }
+std::string text(const Image& image, const char* name) {
+    return std::get<std::string>(image.attributes.at(name));
+}
+std::span<const float> channel(const Image& image, const char* name) {
+    return plane(image, size_t(find_channel(image, name)));
+}
 
 }  // namespace
 
@@ -37,12 +42,13 @@ TEST_CASE("a render writes an image with its attributes, layers and statistics")
     const Image image = read_exr(program.folder / "out.exr");
     CHECK(image.width == 16);
     CHECK(image.height == 8);
-    for (const char* name : {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z",
-                             "error.R", "error.G", "error.B"}) {
+    for (const char* name : {"R", "G", "B", "albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y",
+                             "normal.Z", "depth.Z", "error.R", "error.G", "error.B"}) {
         CAPTURE(name);
         REQUIRE(find_channel(image, name) >= 0);
     }
-    // The pixel at the corner sees the environment; one in the middle the ball, 4 m away and facing the camera.
+    // The pixel at the corner sees the environment; one in the middle the ball, 4 m away and facing the
+    // camera.
     const size_t middle = 4 * 16 + 8;
     CHECK(channel(image, "R")[0] == doctest::Approx(1));
     CHECK(channel(image, "R")[middle] == doctest::Approx(0.5).epsilon(0.01));
@@ -58,9 +64,9 @@ TEST_CASE("a render writes an image with its attributes, layers and statistics")
     for (const char* name : {"device", "driver", "version"}) CHECK(!text(image, name).empty());
 
     const auto stats = nlohmann::json::parse(read_text(program.folder / "stats.json"));
-    for (const char* member : {"passes", "forward_rays", "backward_rays", "seconds", "rays_per_second", "kernels",
-                               "estimated_relative_error", "compiled_kernels", "compile_seconds", "device", "driver",
-                               "peak_device_memory_bytes", "non_finite_samples"}) {
+    for (const char* member : {"passes", "forward_rays", "backward_rays", "seconds", "rays_per_second",
+                               "kernels", "estimated_relative_error", "compiled_kernels", "compile_seconds",
+                               "device", "driver", "peak_device_memory_bytes", "non_finite_samples"}) {
         CAPTURE(member);
         CHECK(stats.contains(member));
     }
@@ -121,7 +127,9 @@ TEST_CASE("an interrupted render writes the image so far and ends with 130") {
         write_text(program.folder / "stderr.txt", "");
         const pid_t child = program.start(with({"--time", "600"}));
         // Its first line of progress says that it renders.
-        for (int i = 0; i < 1200 && read_text(program.folder / "stderr.txt").find("pass") == std::string::npos; ++i) usleep(100000);
+        for (int i = 0;
+             i < 1200 && read_text(program.folder / "stderr.txt").find("pass") == std::string::npos; ++i)
+            usleep(100000);
         kill(child, signal);
         const Run run = program.finish(child);
         CAPTURE(run.err);
@@ -171,7 +179,8 @@ TEST_CASE("inspect, classes and devices tell what there is") {
     }
     const Run classes = program.run({"classes", "conductor"});
     CHECK(classes.code == 0);
-    for (const char* word : {"alpha", "[0, 1]", "reflectance", "multiscatter"}) CHECK(classes.out.find(word) != std::string::npos);
+    for (const char* word : {"alpha", "[0, 1]", "reflectance", "multiscatter"})
+        CHECK(classes.out.find(word) != std::string::npos);
     const Run devices = program.run({"devices"});
     CHECK(devices.code == 0);
     CHECK(devices.out.find("(default)") != std::string::npos);

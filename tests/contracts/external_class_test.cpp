@@ -1,5 +1,5 @@
-// The property of the architecture: a class from outside the source tree is one file, named by the scene. Nothing of the
-// program knows the two classes written here.
+// The property of the architecture: a class from outside the source tree is one file, named by the scene.
+// Nothing of the program knows the two classes written here.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,7 +14,8 @@ using nlohmann::json;
 
 namespace {
 
-// A lobe around the normal, cos^exponent, that reflects the same part of the light in every direction of view.
+// A lobe around the normal, cos^exponent, that reflects the same part of the light in every direction of
+// view.
 const char* velvet = R"(// A soft lobe around the normal.
 struct Velvet {
     SpectrumRef tint;   //: 0.5 in [0, 1]. Reflected part of what comes from everywhere.
@@ -39,7 +40,8 @@ bool velvet_is_delta(Velvet r, SurfaceContext c) { return false; }
 bool velvet_is_opaque(Velvet r, SurfaceContext c) { return true; }
 )";
 
-// z = height (x² + y²) / radius², from the apex at the origin up to the rim; the normal points outward (downward).
+// z = height (x² + y²) / radius², from the apex at the origin up to the rim; the normal points outward
+// (downward).
 const char* paraboloid = R"(// A bowl.
 #include "lib/warps.glsl"
 
@@ -91,7 +93,8 @@ void paraboloid_bounds(Paraboloid r, out vec3 lo, out vec3 hi) {
 }
 )";
 
-// Two cells of 4 m: a velvet sphere, and the bowl in black from the side, far behind so that the sphere does not see it.
+// Two cells of 4 m: a velvet sphere, and the bowl in black from the side, far behind so that the sphere does
+// not see it.
 struct Visitors {
     TemporaryFolder folder;
     SceneBuilder scene;
@@ -139,7 +142,8 @@ TEST_CASE("a scene brings its own surface and its own geometry, one file each") 
         CHECK(m.mean == doctest::Approx(tint[c]).epsilon(0.01));
     }
     // The black bowl hides its silhouette, 4/3 radius height, of the 16 m² of its cell.
-    CHECK(window_mean(e, {32, 0, 32, 32}).mean == doctest::Approx(1 - 4.0 / 3 * 1.25 * 2 / 16).epsilon(0.002));
+    CHECK(window_mean(e, {32, 0, 32, 32}).mean ==
+          doctest::Approx(1 - 4.0 / 3 * 1.25 * 2 / 16).epsilon(0.002));
 }
 
 TEST_CASE("parameters of a brought class are checked by its file") {
@@ -154,7 +158,8 @@ TEST_CASE("parameters of a brought class are checked by its file") {
         CHECK_MESSAGE(line.find("[0, 100]") != std::string::npos, line);
     }
     SUBCASE("a required one that is missing") {
-        const std::string line = Visitors(json::object({{"exponent", 2}}), json::object({{"height", 1}})).complaint();
+        const std::string line =
+            Visitors(json::object({{"exponent", 2}}), json::object({{"height", 1}})).complaint();
         CHECK_MESSAGE(line.find("radius") != std::string::npos, line);
     }
 }
@@ -162,8 +167,12 @@ TEST_CASE("parameters of a brought class are checked by its file") {
 TEST_CASE("a class file that is missing or does not compile is one line that names it") {
     Visitors visitors;
     SUBCASE("missing") { std::filesystem::remove(visitors.folder / "velvet.glsl"); }
-    SUBCASE("without its record") { write_text(visitors.folder / "velvet.glsl", "struct Other { float a; };\n"); }
-    SUBCASE("not GLSL") { write_text(visitors.folder / "velvet.glsl", "struct Velvet { float exponent; };\nfloat x = ;\n"); }
+    SUBCASE("without its record") {
+        write_text(visitors.folder / "velvet.glsl", "struct Other { float a; };\n");
+    }
+    SUBCASE("not GLSL") {
+        write_text(visitors.folder / "velvet.glsl", "struct Velvet { float exponent; };\nfloat x = ;\n");
+    }
     const std::string line = visitors.complaint();
     CHECK_MESSAGE(line.find("velvet.glsl") != std::string::npos, line);
 }

@@ -43,7 +43,8 @@ TEST_CASE("a kernel reads buffers and push constants and writes its results") {
         layout(scalar, set = 0) buffer Output { float results[]; };
         layout(push_constant) uniform Push { uint count; float factor; };
         void main() { uint i = gl_GlobalInvocationID.x; if (i < count) results[i] = factor * values[i]; }
-    )", {{"Input", &in}, {"Output", &out}});
+    )",
+                                           {{"Input", &in}, {"Output", &out}});
     CommandList list(device);
     list.dispatch(kernel, 16, {{"count", 1000u}, {"factor", 3.0f}});
     KernelTimings timings;
@@ -54,12 +55,15 @@ TEST_CASE("a kernel reads buffers and push constants and writes its results") {
 }
 
 TEST_CASE("a buffer that the host does not bind is named") {
-    CHECK_THROWS_WITH_AS(make_test_kernel("lonely", "layout(scalar) buffer Missing { float a[]; }; void main() { a[0] = 1.0; }", {}),
-                         "kernel lonely reads buffer Missing, which the host does not bind", Error);
+    CHECK_THROWS_WITH_AS(
+        make_test_kernel("lonely",
+                         "layout(scalar) buffer Missing { float a[]; }; void main() { a[0] = 1.0; }", {}),
+        "kernel lonely reads buffer Missing, which the host does not bind", Error);
 }
 
 TEST_CASE("a shader error names file and line") {
     ShaderSources sources;
     sources.generated["broken.comp"] = "void main() {\n  undefined_name = 1;\n}\n";
-    CHECK_THROWS_WITH_AS(compile_shader(sources, "broken.comp"), "broken.comp:2: 'undefined_name' : undeclared identifier", Error);
+    CHECK_THROWS_WITH_AS(compile_shader(sources, "broken.comp"),
+                         "broken.comp:2: 'undefined_name' : undeclared identifier", Error);
 }

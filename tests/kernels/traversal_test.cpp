@@ -183,7 +183,8 @@ TEST_CASE("rays that are not numbers end without a hit") {
         CHECK(t.hit.primitive == no_record);
 }
 
-// Of rays from within a closed, bumpy mesh, two thirds of them aimed at edges and vertices: how many meet nothing.
+// Of rays from within a closed, bumpy mesh, two thirds of them aimed at edges and vertices: how many meet
+// nothing.
 size_t count_leaks(size_t batches, size_t batch) {
     Random random(8);
     const std::vector<glm::vec3> sphere = icosphere(4, 1);

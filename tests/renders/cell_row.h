@@ -1,5 +1,5 @@
-// A row of cells, 2 m wide, with black walls between them, seen straight from above by one camera at z = 0.05: many small
-// scenes with one kernel. Each cell is compared with a closed form.
+// A row of cells, 2 m wide, with black walls between them, seen straight from above by one camera at z =
+// 0.05: many small scenes with one kernel. Each cell is compared with a closed form.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,9 @@ inline constexpr double cell_size = 2, reflectance = 0.5, eye_height = 0.05;  //
 
 struct Cell {
     std::string name;
-    std::function<void(SceneBuilder&, double x)> build;             // x: of the cell's middle
-    std::function<double(double x, double y)> radiance;             // that a point of the floor sends up; x, y from the middle
+    std::function<void(SceneBuilder&, double x)> build;  // x: of the cell's middle
+    std::function<double(double x, double y)>
+        radiance;       // that a point of the floor sends up; x, y from the middle
     bool seen = false;  // `radiance` is of whole pixels, as the camera sees the emitter itself
 };
 
@@ -36,12 +37,14 @@ inline void add_floor(SceneBuilder& scene, double x) {
 // The mean over a pixel's square, by 4 x 4 points.
 inline double pixel_mean(const std::function<double(double, double)>& f, double x, double y, double pixel) {
     double sum = 0;
-    for (int i = 0; i < 16; ++i) sum += f(x + pixel * ((i % 4 + 0.5) / 4 - 0.5), y + pixel * ((i / 4 + 0.5) / 4 - 0.5)) / 16;
+    for (int i = 0; i < 16; ++i)
+        sum += f(x + pixel * ((i % 4 + 0.5) / 4 - 0.5), y + pixel * ((i / 4 + 0.5) / 4 - 0.5)) / 16;
     return sum;
 }
 
-inline void check_row(const std::vector<Cell>& row, RenderPlan plan,
-                      const std::function<void(SceneBuilder&)>& prepare = [](SceneBuilder&) {}) {
+inline void check_row(
+    const std::vector<Cell>& row, RenderPlan plan,
+    const std::function<void(SceneBuilder&)>& prepare = [](SceneBuilder&) {}) {
     SceneBuilder scene;
     prepare(scene);
     const int black = scene.surface({{"class", "absorber"}});
@@ -60,8 +63,10 @@ inline void check_row(const std::vector<Cell>& row, RenderPlan plan,
         for (uint32_t y = 0; y < cell_pixels; ++y)
             for (uint32_t x = 0; x < cell_pixels; ++x) {
                 const double px = (x + 0.5) * pixel - cell_size / 2, py = cell_size / 2 - (y + 0.5) * pixel;
-                const double value = row[i].seen ? row[i].radiance(px, py) : pixel_mean(row[i].radiance, px, py, pixel);
-                for (int c = 0; c < 3; ++c) expected[3 * (size_t(y) * plan.width + i * cell_pixels + x) + size_t(c)] = value;
+                const double value =
+                    row[i].seen ? row[i].radiance(px, py) : pixel_mean(row[i].radiance, px, py, pixel);
+                for (int c = 0; c < 3; ++c)
+                    expected[3 * (size_t(y) * plan.width + i * cell_pixels + x) + size_t(c)] = value;
             }
     for (size_t i = 0; i < row.size(); ++i) {
         CAPTURE(row[i].name);

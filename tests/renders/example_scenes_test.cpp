@@ -31,7 +31,8 @@ void check_uniform(const std::string& name, uint32_t passes, double value, doubl
 
 TEST_CASE("every example scene is read without a warning") {
     size_t count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes")) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes")) {
         if (entry.path().extension() != ".gltf") continue;
         const SceneDescription scene = import_gltf(entry.path());
         CHECK_MESSAGE(scene.warnings.empty(), entry.path().string());
@@ -59,7 +60,9 @@ TEST_CASE("example lamps: the floor below a spot, below the same behind a pane, 
 }
 
 TEST_SUITE("long") {
-    TEST_CASE("example furnace_smooth: lossless things are invisible") { check_uniform("furnace_smooth", 128, 1, 0.002); }
+    TEST_CASE("example furnace_smooth: lossless things are invisible") {
+        check_uniform("furnace_smooth", 128, 1, 0.002);
+    }
 
     TEST_CASE("example furnace_rough: rough surfaces that keep all light are invisible") {
         check_uniform("furnace_rough", 128, 1, 0.005);

@@ -1,6 +1,8 @@
-// Lossless things under light that is the same from everywhere cannot be seen: their radiance is the environment's.
+// Lossless things under light that is the same from everywhere cannot be seen: their radiance is the
+// environment's.
 //
-// One row of spheres, a cell of the image each. The environment is coloured, so that a channel that is lost or mixed shows.
+// One row of spheres, a cell of the image each. The environment is coloured, so that a channel that is lost
+// or mixed shows.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -25,13 +27,25 @@ const std::vector<Sphere>& spheres() {
         {"glass", {{"class", "dielectric"}}, true, 0.0005},
         {"pane", {{"class", "thin_dielectric"}}, false, 0.0005},
         {"boundary", {{"class", "boundary"}}, true, 0.0005},
-        {"conductor .05", {{"class", "conductor"}, {"reflectance", 1}, {"alpha", 0.05}, {"multiscatter", true}}, false, 0.005},
-        {"conductor .3", {{"class", "conductor"}, {"reflectance", 1}, {"alpha", 0.3}, {"multiscatter", true}}, false, 0.005},
-        {"conductor .8", {{"class", "conductor"}, {"reflectance", 1}, {"alpha", 0.8}, {"multiscatter", true}}, false, 0.005},
+        {"conductor .05",
+         {{"class", "conductor"}, {"reflectance", 1}, {"alpha", 0.05}, {"multiscatter", true}},
+         false,
+         0.005},
+        {"conductor .3",
+         {{"class", "conductor"}, {"reflectance", 1}, {"alpha", 0.3}, {"multiscatter", true}},
+         false,
+         0.005},
+        {"conductor .8",
+         {{"class", "conductor"}, {"reflectance", 1}, {"alpha", 0.8}, {"multiscatter", true}},
+         false,
+         0.005},
         {"rough glass .05", {{"class", "dielectric"}, {"alpha", 0.05}, {"multiscatter", true}}, true, 0.005},
         {"rough glass .3", {{"class", "dielectric"}, {"alpha", 0.3}, {"multiscatter", true}}, true, 0.005},
         {"rough glass .8", {{"class", "dielectric"}, {"alpha", 0.8}, {"multiscatter", true}}, true, 0.005},
-        {"single scattering conductor .8", {{"class", "conductor"}, {"reflectance", 1}, {"alpha", 0.8}}, false, 0},
+        {"single scattering conductor .8",
+         {{"class", "conductor"}, {"reflectance", 1}, {"alpha", 0.8}},
+         false,
+         0},
     };
     return list;
 }
@@ -68,7 +82,8 @@ WindowMean albedo(const Estimates& e, size_t index) {
             if (std::hypot(dx, dy) * spacing > radius) continue;
             for (uint32_t c = 0; c < 3; ++c, ++count)
                 for (uint32_t s = 0; s < e.seeds; ++s)
-                    means[s] += e.images[s][3 * (size_t(y) * e.width + index * cell + x) + c] / environment[c];
+                    means[s] +=
+                        e.images[s][3 * (size_t(y) * e.width + index * cell + x) + c] / environment[c];
         }
     for (double& m : means) m /= count, result.mean += m / e.seeds;
     for (const double m : means)
@@ -91,13 +106,15 @@ TEST_CASE("lossless spheres are invisible under a constant environment") {
             CHECK(std::fabs(m.mean - 1) < sphere.tolerance);
             CHECK(m.standard_error < 0.3 * sphere.tolerance);  // otherwise the check above says nothing
         } else {
-            // The counter-example: without multiscatter the same surface loses light, and the test would see it.
+            // The counter-example: without multiscatter the same surface loses light, and the test would see
+            // it.
             CHECK(m.mean < 0.97);
         }
     }
     // The corners of the cells show the environment itself.
     for (size_t i = 0; i < spheres().size(); ++i)
         for (uint32_t c = 0; c < 3; ++c)
-            for (const auto& image : e.images) CHECK(image[3 * (i * cell) + c] == doctest::Approx(environment[c]).epsilon(1e-6));
+            for (const auto& image : e.images)
+                CHECK(image[3 * (i * cell) + c] == doctest::Approx(environment[c]).epsilon(1e-6));
     CHECK(e.counters.depth_limit == 0);
 }

@@ -1,4 +1,5 @@
-// Arrays read through their address, as those beyond the size of a binding are, give the same image bit for bit.
+// Arrays read through their address, as those beyond the size of a binding are, give the same image bit for
+// bit.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -11,7 +12,8 @@ using namespace etendue;
 
 namespace {
 
-std::vector<std::byte> film_of(const SceneDescription& description, uint64_t binding_bytes, bool expect_by_address) {
+std::vector<std::byte> film_of(const SceneDescription& description, uint64_t binding_bytes,
+                               bool expect_by_address) {
     SceneOptions options;
     options.cache_folder = default_cache_folder();
     options.binding_bytes = binding_bytes;
@@ -46,7 +48,8 @@ TEST_CASE("arrays beyond the size of a binding are read by address, with the sam
     scene.meshes.push_back(mesh);
     scene.instances.push_back({0});
     MaterialDescription material;
-    material.surface = {"lambertian", {{"reflectance", 0.8}, {"reflectance_texture", {{"index", 0}}}}, "/materials/0"};
+    material.surface = {
+        "lambertian", {{"reflectance", 0.8}, {"reflectance_texture", {{"index", 0}}}}, "/materials/0"};
     scene.materials.push_back(material);
     glm::dmat4 placement(1.0);
     placement[3] = glm::dvec4(0, 0, 4, 1);
@@ -62,7 +65,8 @@ TEST_CASE("arrays beyond the size of a binding are read by address, with the sam
     std::fwrite(file.data(), 1, file.size(), out);
     std::fclose(out);
     scene.folder = folder;
-    scene.environment = ObjectDescription{"image", {{"file", "sky.hdr"}}, "/extensions/ETD_optics/environment"};
+    scene.environment =
+        ObjectDescription{"image", {{"file", "sky.hdr"}}, "/extensions/ETD_optics/environment"};
 
     CHECK(film_of(scene, 0, false) == film_of(scene, 16, true));
     std::filesystem::remove_all(folder);

@@ -1,7 +1,7 @@
 // Lights of every kind over a diffuse floor, against closed forms.
 //
-// Each cell has its light and a floor of reflectance 0.5 at z = 0; the camera hangs under the lights. Emitting things that it
-// is to see lie on the floor.
+// Each cell has its light and a floor of reflectance 0.5 at z = 0; the camera hangs under the lights.
+// Emitting things that it is to see lie on the floor.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -17,8 +17,10 @@ using std::numbers::pi;
 namespace {
 
 std::vector<glm::dvec3> rectangle_above(double x, double y, double width, double height, double z) {
-    return {{-width / 2 - x, -height / 2 - y, z}, {width / 2 - x, -height / 2 - y, z},
-            {width / 2 - x, height / 2 - y, z}, {-width / 2 - x, height / 2 - y, z}};
+    return {{-width / 2 - x, -height / 2 - y, z},
+            {width / 2 - x, -height / 2 - y, z},
+            {width / 2 - x, height / 2 - y, z},
+            {-width / 2 - x, height / 2 - y, z}};
 }
 
 // The part of [x0, x1] that lies within [-half, half] around c.
@@ -31,20 +33,29 @@ const nlohmann::json along_x = {0, 0.70710678118654752, 0, 0.70710678118654752};
 std::vector<Cell> cells() {
     constexpr double pixel = cell_size / cell_pixels;
     return {
-        {"sphere", [](SceneBuilder& s, double x) { add_floor(s, x), s.sphere(0.3, s.black_emitter(2), at(x, 0, 0.8)); },
-         [](double x, double y) { return floor_radiance(2 * sphere_irradiance(0.3, {-x, -y, 0.8}, up)); }},
+        {"sphere",
+         [](SceneBuilder& s, double x) { add_floor(s, x), s.sphere(0.3, s.black_emitter(2), at(x, 0, 0.8)); },
+         [](double x, double y) {
+             return floor_radiance(2 * sphere_irradiance(0.3, {-x, -y, 0.8}, up));
+         }},
         {"disk",
          [](SceneBuilder& s, double x) {
-             add_floor(s, x), s.shape({{"class", "disk"}, {"radius", 0.5}}, s.black_emitter(3), facing_down(x, 0, 0.7));
+             add_floor(s, x),
+                 s.shape({{"class", "disk"}, {"radius", 0.5}}, s.black_emitter(3), facing_down(x, 0, 0.7));
          },
          [](double x, double y) { return floor_radiance(3 * disk_irradiance(0.5, 0.7, std::hypot(x, y))); }},
         {"rectangle",
-         [](SceneBuilder& s, double x) { add_floor(s, x), s.rectangle(1.2, 0.5, s.black_emitter(4), facing_down(x, 0, 0.6)); },
-         [](double x, double y) { return floor_radiance(4 * polygon_irradiance(rectangle_above(x, y, 1.2, 0.5, 0.6), up)); }},
+         [](SceneBuilder& s, double x) {
+             add_floor(s, x), s.rectangle(1.2, 0.5, s.black_emitter(4), facing_down(x, 0, 0.6));
+         },
+         [](double x, double y) {
+             return floor_radiance(4 * polygon_irradiance(rectangle_above(x, y, 1.2, 0.5, 0.6), up));
+         }},
         {"cylinder, lying",
          [](SceneBuilder& s, double x) {
              add_floor(s, x);
-             s.shape({{"class", "cylinder"}, {"radius", 0.2}, {"height", 1.2}}, s.black_emitter(2), Place{{x, 0, 0.7}, along_x});
+             s.shape({{"class", "cylinder"}, {"radius", 0.2}, {"height", 1.2}}, s.black_emitter(2),
+                     Place{{x, 0, 0.7}, along_x});
          },
          [](double x, double y) {
              const auto surface = [](double u, double v) {
@@ -57,42 +68,57 @@ std::vector<Cell> cells() {
         {"mesh of two triangles",
          [](SceneBuilder& s, double x) {
              add_floor(s, x);
-             s.mesh({{-0.6f, -0.25f, 0}, {0.6f, -0.25f, 0}, {0.6f, 0.25f, 0}, {-0.6f, 0.25f, 0}}, {0, 1, 2, 0, 2, 3},
-                    s.black_emitter(4), facing_down(x, 0, 0.6));
+             s.mesh({{-0.6f, -0.25f, 0}, {0.6f, -0.25f, 0}, {0.6f, 0.25f, 0}, {-0.6f, 0.25f, 0}},
+                    {0, 1, 2, 0, 2, 3}, s.black_emitter(4), facing_down(x, 0, 0.6));
          },
-         [](double x, double y) { return floor_radiance(4 * polygon_irradiance(rectangle_above(x, y, 1.2, 0.5, 0.6), up)); }},
+         [](double x, double y) {
+             return floor_radiance(4 * polygon_irradiance(rectangle_above(x, y, 1.2, 0.5, 0.6), up));
+         }},
         {"emission given as flux: 10 lm from 0.6 m²",
          [](SceneBuilder& s, double x) {
              add_floor(s, x);
-             s.rectangle(1.2, 0.5, s.material({{"surface", {{"class", "absorber"}}}, {"emission", {{"flux", 10}}}}),
+             s.rectangle(1.2, 0.5,
+                         s.material({{"surface", {{"class", "absorber"}}}, {"emission", {{"flux", 10}}}}),
                          facing_down(x, 0, 0.6));
          },
          [](double x, double y) {
-             return floor_radiance(10 / (pi * 0.6) * polygon_irradiance(rectangle_above(x, y, 1.2, 0.5, 0.6), up));
+             return floor_radiance(10 / (pi * 0.6) *
+                                   polygon_irradiance(rectangle_above(x, y, 1.2, 0.5, 0.6), up));
          }},
-        {"point", [](SceneBuilder& s, double x) { add_floor(s, x), s.light({{"type", "point"}, {"intensity", 5}}, at(x + 0.3, 0, 0.5)); },
+        {"point",
+         [](SceneBuilder& s, double x) {
+             add_floor(s, x), s.light({{"type", "point"}, {"intensity", 5}}, at(x + 0.3, 0, 0.5));
+         },
          [](double x, double y) { return point_light(x - 0.3, y, 0.5, 5); }},
         {"spot",
          [](SceneBuilder& s, double x) {
              add_floor(s, x);
-             s.light({{"type", "spot"}, {"intensity", 6}, {"spot", {{"innerConeAngle", 0.3}, {"outerConeAngle", 0.9}}}}, at(x, 0, 0.9));
+             s.light({{"type", "spot"},
+                      {"intensity", 6},
+                      {"spot", {{"innerConeAngle", 0.3}, {"outerConeAngle", 0.9}}}},
+                     at(x, 0, 0.9));
          },
          [](double x, double y) {
              const double c = 0.9 / std::sqrt(x * x + y * y + 0.81);
              const double t = std::clamp((c - std::cos(0.9)) / (std::cos(0.3) - std::cos(0.9)), 0.0, 1.0);
              return point_light(x, y, 0.9, 6 * t * t);
          }},
-        // What the camera sees itself: radiance 1 for an emissive factor of 1, by the part of each pixel that it covers.
+        // What the camera sees itself: radiance 1 for an emissive factor of 1, by the part of each pixel that
+        // it covers.
         {"emissive factor",
          [](SceneBuilder& s, double x) {
              s.rectangle(1.1, 0.7,
-                         s.material({{"surface", {{"class", "lambertian"}, {"reflectance", 0}}}}, {{"emissiveFactor", {1, 1, 1}}}),
+                         s.material({{"surface", {{"class", "lambertian"}, {"reflectance", 0}}}},
+                                    {{"emissiveFactor", {1, 1, 1}}}),
                          at(x + 0.03, 0.05, 0));
          },
-         [](double x, double y) { return overlap(x, pixel, 0.03, 0.55) * overlap(y, pixel, 0.05, 0.35); }, true},
+         [](double x, double y) { return overlap(x, pixel, 0.03, 0.55) * overlap(y, pixel, 0.05, 0.35); },
+         true},
         {"luminance with a spectrum",
          [](SceneBuilder& s, double x) {
-             s.rectangle(1, 1, s.material({{"surface", {{"class", "absorber"}}}, {"emission", {{"luminance", 3}, {"spectrum", 0.25}}}}),
+             s.rectangle(1, 1,
+                         s.material({{"surface", {{"class", "absorber"}}},
+                                     {"emission", {{"luminance", 3}, {"spectrum", 0.25}}}}),
                          at(x, 0, 0));
          },
          [](double x, double y) { return 3 * overlap(x, pixel, 0, 0.5) * overlap(y, pixel, 0, 0.5); }, true},
@@ -111,7 +137,8 @@ TEST_CASE("lights of every kind give a diffuse floor its analytic radiance, and 
 }
 
 TEST_CASE("ten thousand emissive triangles of unequal size and brightness add up to their closed form") {
-    // In one plane, so that none hides another: a lattice of squares, each holding one triangle of its own size.
+    // In one plane, so that none hides another: a lattice of squares, each holding one triangle of its own
+    // size.
     constexpr int side = 100;
     constexpr double width = 4, h = 0.5, view = 1;  // m
     SceneBuilder scene;
@@ -124,13 +151,17 @@ TEST_CASE("ten thousand emissive triangles of unequal size and brightness add up
     std::vector<glm::vec3> positions[4];
     std::vector<uint32_t> indices[4];
     uint32_t state = 12345;
-    const auto random = [&] { return double((state = state * 1664525u + 1013904223u) >> 8) / double(1 << 24); };
+    const auto random = [&] {
+        return double((state = state * 1664525u + 1013904223u) >> 8) / double(1 << 24);
+    };
     for (int i = 0; i < side * side; ++i) {
         const int level = std::min(3, int(-std::log2(random() + 1e-9) / 1.5));
         const double scale = width / side * (0.1 + 0.8 * random());
-        const glm::dvec3 corner((i % side) * width / side - width / 2, (i / side) * width / side - width / 2, h);
+        const glm::dvec3 corner((i % side) * width / side - width / 2, (i / side) * width / side - width / 2,
+                                h);
         // Facing down: clockwise seen from above.
-        Emitter emitter{{corner, corner + glm::dvec3(0, scale, 0), corner + glm::dvec3(scale, 0, 0)}, levels[level]};
+        Emitter emitter{{corner, corner + glm::dvec3(0, scale, 0), corner + glm::dvec3(scale, 0, 0)},
+                        levels[level]};
         for (glm::dvec3& p : emitter.corners) {
             indices[level].push_back(uint32_t(positions[level].size()));
             positions[level].push_back(glm::vec3(p));
@@ -150,10 +181,12 @@ TEST_CASE("ten thousand emissive triangles of unequal size and brightness add up
         for (uint32_t x = 0; x < 16; ++x) {
             double sum = 0;
             for (int k = 0; k < 4; ++k) {
-                const glm::dvec3 p(view * ((x + 0.25 + 0.5 * (k % 2)) / 16 - 0.5), view * (0.5 - (y + 0.25 + 0.5 * (k / 2)) / 16), 0);
+                const glm::dvec3 p(view * ((x + 0.25 + 0.5 * (k % 2)) / 16 - 0.5),
+                                   view * (0.5 - (y + 0.25 + 0.5 * (k / 2)) / 16), 0);
                 for (const Emitter& emitter : emitters)
                     sum += emitter.radiance / 4 *
-                           polygon_irradiance({emitter.corners[0] - p, emitter.corners[1] - p, emitter.corners[2] - p}, up);
+                           polygon_irradiance(
+                               {emitter.corners[0] - p, emitter.corners[1] - p, emitter.corners[2] - p}, up);
             }
             for (int c = 0; c < 3; ++c) {
                 expected[3 * (y * 16 + x) + size_t(c)] = floor_radiance(sum);

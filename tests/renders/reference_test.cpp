@@ -59,11 +59,13 @@ std::optional<Result> compare_with(const Reference& reference, uint32_t passes, 
     result.tiles = agreement(e, values, 8, sd);
     const WindowMean ours = window_mean(e);
     result.bias = ours.mean / mean - 1;
-    result.bias_error = std::hypot(ours.standard_error / mean, std::sqrt(reference.relmse / double(values.size())));
+    result.bias_error =
+        std::hypot(ours.standard_error / mean, std::sqrt(reference.relmse / double(values.size())));
     MESSAGE(reference.name, ", pixels: ", describe(result.pixels));
     MESSAGE(reference.name, ", tiles:  ", describe(result.tiles));
     MESSAGE(reference.name, ", bias ", 100 * result.bias, " % +- ", 100 * result.bias_error, " %");
-    if (!result.pixels.holds || !result.tiles.holds || result.tiles.rms_z > 1.2 || std::fabs(result.bias) > 0.003)
+    if (!result.pixels.holds || !result.tiles.holds || result.tiles.rms_z > 1.2 ||
+        std::fabs(result.bias) > 0.003)
         keep(reference, e, expected);
     return result;
 }
@@ -90,16 +92,25 @@ void check_mean(const Reference& reference, uint32_t passes, uint32_t seeds, dou
     CHECK(std::fabs(result->bias) < allowed_bias + 4 * result->bias_error);
 }
 
-const Reference cornell = {"cornell_rgb", 4.4e-4}, plates = {"veach_mis", 2.0e-4}, furnace = {"furnace", 1.9e-5};
+const Reference cornell = {"cornell_rgb", 4.4e-4}, plates = {"veach_mis", 2.0e-4},
+                furnace = {"furnace", 1.9e-5};
 
 }  // namespace
 
 TEST_CASE("the Cornell box looks as its reference") { check_reference(cornell, 16, 16); }
-TEST_CASE("glossy plates under lights of all sizes look as their reference") { check_reference(plates, 128, 16); }
+TEST_CASE("glossy plates under lights of all sizes look as their reference") {
+    check_reference(plates, 128, 16);
+}
 TEST_CASE("spheres in a furnace look as their reference") { check_reference(furnace, 64, 16); }
 
 TEST_SUITE("long") {
-    TEST_CASE("the mean of the Cornell box is that of its reference within 0.1 %") { check_mean(cornell, 128, 16, 0.001); }
-    TEST_CASE("the mean of the glossy plates is that of their reference within 0.1 %") { check_mean(plates, 512, 16, 0.001); }
-    TEST_CASE("the mean of the furnace is that of its reference within 0.02 %") { check_mean(furnace, 512, 16, 0.0002); }
+    TEST_CASE("the mean of the Cornell box is that of its reference within 0.1 %") {
+        check_mean(cornell, 128, 16, 0.001);
+    }
+    TEST_CASE("the mean of the glossy plates is that of their reference within 0.1 %") {
+        check_mean(plates, 512, 16, 0.001);
+    }
+    TEST_CASE("the mean of the furnace is that of its reference within 0.02 %") {
+        check_mean(furnace, 512, 16, 0.0002);
+    }
 }

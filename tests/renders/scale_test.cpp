@@ -1,5 +1,5 @@
-// The same scene a thousand times smaller, ten thousand times larger, or far from the origin: the same image, no light that
-// leaks through closed walls, and no wall that hides what lies a hair in front of it.
+// The same scene a thousand times smaller, ten thousand times larger, or far from the origin: the same image,
+// no light that leaks through closed walls, and no wall that hides what lies a hair in front of it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -57,7 +57,8 @@ TEST_CASE("the image of a scene does not depend on its scale and place") {
         std::vector<double> sd(all[0].mean.size());
         for (size_t k = 0; k < sd.size(); ++k) {
             double squares = 0;
-            for (const auto& image : all[0].images) squares += (image[k] - all[0].mean[k]) * (image[k] - all[0].mean[k]);
+            for (const auto& image : all[0].images)
+                squares += (image[k] - all[0].mean[k]) * (image[k] - all[0].mean[k]);
             sd[k] = std::sqrt(squares / (plan.seeds - 1.0) / plan.seeds);
         }
         for (const uint32_t tile : {1u, 4u}) {
@@ -95,7 +96,8 @@ TEST_CASE("shells 4e-5 apart hide and light each other") {
         CAPTURE(variant.name);
         SceneBuilder scene;
         const int black = scene.surface({{"class", "absorber"}}), emitter = scene.black_emitter(1);
-        // A bright sphere in a black shell; a black sphere in a bright shell; white under a bright ceiling, seen from between.
+        // A bright sphere in a black shell; a black sphere in a bright shell; white under a bright ceiling,
+        // seen from between.
         scene.sphere(1, emitter, at(0, 0, 0));
         scene.sphere(1 + gap, black, at(0, 0, 0));
         scene.sphere(1, black, at(3, 0, 0));
@@ -117,7 +119,8 @@ TEST_CASE("shells 4e-5 apart hide and light each other") {
         const Estimates bright = render_estimates(compiled, plan);
         for (uint32_t y = 0; y < 32; ++y)
             for (uint32_t x = 0; x < 32; ++x)
-                if (std::hypot(x - 15.5, y - 15.5) < 0.9 / 1.2 * 16) CHECK(bright.at(x, y, 0) == doctest::Approx(1));
+                if (std::hypot(x - 15.5, y - 15.5) < 0.9 / 1.2 * 16)
+                    CHECK(bright.at(x, y, 0) == doctest::Approx(1));
         // The ceiling fills the whole half space.
         plan.receiver = "between";
         const WindowMean m = window_mean(render_estimates(compiled, plan));

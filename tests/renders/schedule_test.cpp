@@ -1,5 +1,5 @@
-// The image does not depend on how the work is divided: whole paths in one kernel or a kernel a stage, in one batch of passes
-// or many, without or with a stop between.
+// The image does not depend on how the work is divided: whole paths in one kernel or a kernel a stage, in one
+// batch of passes or many, without or with a stop between.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -11,15 +11,21 @@ using namespace etendue;
 
 namespace {
 
-// Something of everything that has a path of its own: media, straight passage, refraction, meshes, shapes, instances of light.
+// Something of everything that has a path of its own: media, straight passage, refraction, meshes, shapes,
+// instances of light.
 SceneBuilder varied_scene() {
     SceneBuilder scene;
     scene.medium("glass", {{"ior", 1.5}, {"absorption", {0.2, 0.1, 0.4}}});
     add_box(scene, {4, 4, 4}, scene.lambertian({0.7, 0.5, 0.3}), true, at(0, 0, 0));
-    scene.sphere(0.6, scene.material({{"surface", {{"class", "dielectric"}, {"alpha", 0.2}}}, {"inside", "glass"}}), at(-0.8, -1.2, 0.3));
-    scene.sphere(0.5, scene.surface({{"class", "conductor"}, {"alpha", 0.1}, {"reflectance", {0.9, 0.8, 0.5}}}), at(0.9, -1.4, 0));
+    scene.sphere(
+        0.6, scene.material({{"surface", {{"class", "dielectric"}, {"alpha", 0.2}}}, {"inside", "glass"}}),
+        at(-0.8, -1.2, 0.3));
+    scene.sphere(0.5,
+                 scene.surface({{"class", "conductor"}, {"alpha", 0.1}, {"reflectance", {0.9, 0.8, 0.5}}}),
+                 at(0.9, -1.4, 0));
     scene.rectangle(1.5, 1.5, scene.surface({{"class", "thin_dielectric"}}), at(0, 0, 1));
-    scene.rectangle(1, 1, scene.black_emitter({4, 5, 6}), Place{{0, 1.9, 0}, {0.70710678118654752, 0, 0, 0.70710678118654752}});
+    scene.rectangle(1, 1, scene.black_emitter({4, 5, 6}),
+                    Place{{0, 1.9, 0}, {0.70710678118654752, 0, 0, 0.70710678118654752}});
     scene.light({{"type", "point"}, {"intensity", 2}, {"color", {1, 0.5, 0.25}}}, at(1.2, 1.2, 1.2));
     scene.environment(0.1);
     scene.perspective(1.2, at(0, 0, 1.95));

@@ -1,7 +1,8 @@
-// Light through things: absorbing slabs, panes, alpha, against closed forms, both seen directly and by shadow rays.
+// Light through things: absorbing slabs, panes, alpha, against closed forms, both seen directly and by shadow
+// rays.
 //
-// Seen directly: an emitter lies under the thing and the camera looks down through it. By shadow rays: a point light hangs
-// above the thing and the camera, under it, sees the floor.
+// Seen directly: an emitter lies under the thing and the camera looks down through it. By shadow rays: a
+// point light hangs above the thing and the camera, under it, sees the floor.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +16,9 @@ namespace {
 
 constexpr double absorption = 0.7, thickness = 0.5, ior = 1.5;  // 1/m, m
 
-nlohmann::json inside(const char* surface, const char* medium) { return {{"surface", {{"class", surface}}}, {"inside", medium}}; }
+nlohmann::json inside(const char* surface, const char* medium) {
+    return {{"surface", {{"class", surface}}}, {"inside", medium}};
+}
 
 // A slab whose lower face is at z, larger than its cell: of two rectangles with the medium between them.
 void add_slab(SceneBuilder& s, const char* surface, const char* medium, double x, double z) {
@@ -31,9 +34,11 @@ double emitter_seen(double x) { return std::fabs(x) > 0.9 ? 0.96 : 1.0; }
 
 int alpha_material(SceneBuilder& s, double alpha) {
     // Black where it is not transparent, but for its reflection, which has nothing to reflect.
-    return s.material(nlohmann::json::object(), {{"alphaMode", "BLEND"},
-                                                 {"doubleSided", true},
-                                                 {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, alpha}}, {"roughnessFactor", 1}}}});
+    return s.material(
+        nlohmann::json::object(),
+        {{"alphaMode", "BLEND"},
+         {"doubleSided", true},
+         {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, alpha}}, {"roughnessFactor", 1}}}});
 }
 
 double fresnel(double cosine) {
@@ -45,9 +50,10 @@ double pane_transmittance(double cosine) { return 1 - 2 * fresnel(cosine) / (1 +
 
 double cosine_at(double x, double y, double h) { return h / std::sqrt(x * x + y * y + h * h); }
 
-// What lies above the floor sends some of its light back, which the closed forms leave out: the floor is nearly black, and the
-// light strong.
-constexpr double h = 1.2, floor_reflectance = 0.002, intensity = 5 * reflectance / floor_reflectance;  // m, cd
+// What lies above the floor sends some of its light back, which the closed forms leave out: the floor is
+// nearly black, and the light strong.
+constexpr double h = 1.2, floor_reflectance = 0.002,
+                 intensity = 5 * reflectance / floor_reflectance;  // m, cd
 void add_lit_floor(SceneBuilder& s, double x) {
     s.rectangle(cell_size, cell_size, s.lambertian(floor_reflectance), at(x, 0, 0));
     s.light({{"type", "point"}, {"intensity", intensity}}, at(x, 0, h));
@@ -60,28 +66,39 @@ std::vector<Cell> cells() {
          [](SceneBuilder& s, double x) { add_emitter(s, x), add_slab(s, "boundary", "ink", x, -1.5); },
          [](double x, double) { return emitter_seen(x) * std::exp(-absorption * thickness); }, true},
         {"absorbing glass slab",
-         [](SceneBuilder& s, double x) { add_emitter(s, x), add_slab(s, "dielectric", "tinted glass", x, -1.5); },
+         [](SceneBuilder& s, double x) {
+             add_emitter(s, x), add_slab(s, "dielectric", "tinted glass", x, -1.5);
+         },
          [](double x, double) {
              const double r = fresnel(1), a = std::exp(-absorption * thickness);
              return emitter_seen(x) * (1 - r) * (1 - r) * a / (1 - r * r * a * a);
-         }, true},
+         },
+         true},
         {"alpha 0.5 over an emitter",
-         [](SceneBuilder& s, double x) { add_emitter(s, x), s.rectangle(1.99, 4, alpha_material(s, 0.5), at(x, 0, -1)); },
+         [](SceneBuilder& s, double x) {
+             add_emitter(s, x), s.rectangle(1.99, 4, alpha_material(s, 0.5), at(x, 0, -1));
+         },
          [](double x, double) { return emitter_seen(x) * 0.5; }, true},
         {"pane over an emitter",
          [](SceneBuilder& s, double x) {
-             add_emitter(s, x), s.rectangle(1.99, 4, s.surface({{"class", "thin_dielectric"}, {"ior", ior}}), at(x, 0, -1));
+             add_emitter(s, x),
+                 s.rectangle(1.99, 4, s.surface({{"class", "thin_dielectric"}, {"ior", ior}}), at(x, 0, -1));
          },
          [](double x, double) { return emitter_seen(x) * pane_transmittance(1); }, true},
         {"point light behind an absorbing slab",
          [](SceneBuilder& s, double x) { add_lit_floor(s, x), add_slab(s, "boundary", "ink", x, 0.3); },
-         [](double x, double y) { return lit_floor(x, y) * std::exp(-absorption * thickness / cosine_at(x, y, h)); }},
+         [](double x, double y) {
+             return lit_floor(x, y) * std::exp(-absorption * thickness / cosine_at(x, y, h));
+         }},
         {"point light behind a sheet of alpha 0.25",
-         [](SceneBuilder& s, double x) { add_lit_floor(s, x), s.rectangle(1.99, 4, alpha_material(s, 0.25), at(x, 0, 0.5)); },
+         [](SceneBuilder& s, double x) {
+             add_lit_floor(s, x), s.rectangle(1.99, 4, alpha_material(s, 0.25), at(x, 0, 0.5));
+         },
          [](double x, double y) { return 0.75 * lit_floor(x, y); }},
         {"point light behind a pane",
          [](SceneBuilder& s, double x) {
-             add_lit_floor(s, x), s.rectangle(1.99, 4, s.surface({{"class", "thin_dielectric"}, {"ior", ior}}), at(x, 0, 0.5));
+             add_lit_floor(s, x),
+                 s.rectangle(1.99, 4, s.surface({{"class", "thin_dielectric"}, {"ior", ior}}), at(x, 0, 0.5));
          },
          [](double x, double y) { return lit_floor(x, y) * pane_transmittance(cosine_at(x, y, h)); }},
         {"point light within an absorbing medium",
@@ -91,13 +108,16 @@ std::vector<Cell> cells() {
              s.rectangle(1.99, 4, s.material(inside("boundary", "ink")), facing_down(x, 0, 0.3));
              s.rectangle(1.99, 4, s.material(inside("boundary", "ink")), at(x, 0, 3));
          },
-         [](double x, double y) { return lit_floor(x, y) * std::exp(-absorption * (h - 0.3) / cosine_at(x, y, h)); }},
+         [](double x, double y) {
+             return lit_floor(x, y) * std::exp(-absorption * (h - 0.3) / cosine_at(x, y, h));
+         }},
     };
 }
 
 }  // namespace
 
-TEST_CASE("light through slabs, panes and alpha is attenuated as it must be, seen directly and by shadow rays") {
+TEST_CASE(
+    "light through slabs, panes and alpha is attenuated as it must be, seen directly and by shadow rays") {
     RenderPlan plan;
     plan.passes = 128, plan.seeds = 8;
     check_row(cells(), plan, [](SceneBuilder& scene) {

@@ -14,7 +14,8 @@ Device& test_device();
 // What the validation layer has said so far; the test run fails unless it is empty.
 std::vector<std::string> collected_validation_messages();
 
-// Compiles a kernel of the tests: `text` is GLSL that may include anything under shaders/ and `generated` files.
+// Compiles a kernel of the tests: `text` is GLSL that may include anything under shaders/ and `generated`
+// files.
 Kernel make_test_kernel(const std::string& name, const std::string& text, const BufferTable& buffers,
                         std::map<std::string, std::string> generated = {});
 

@@ -1,4 +1,5 @@
-// Entry of every test executable: runs the cases and then fails the run if the validation layer said anything.
+// Entry of every test executable: runs the cases and then fails the run if the validation layer said
+// anything.
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 

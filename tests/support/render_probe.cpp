@@ -68,7 +68,8 @@ int SceneBuilder::material(json optics, json more) {
 }
 
 int SceneBuilder::black_emitter(json radiance) {
-    return material({{"surface", {{"class", "absorber"}}}, {"emission", {{"radiance", std::move(radiance)}}}});
+    return material(
+        {{"surface", {{"class", "absorber"}}}, {"emission", {{"radiance", std::move(radiance)}}}});
 }
 
 void SceneBuilder::shape(json geometry, int material, const Place& place) {
@@ -90,18 +91,22 @@ void SceneBuilder::light(json punctual, const Place& place) {
     node({{"extensions", {{"KHR_lights_punctual", {{"light", lights.size() - 1}}}}}}, place);
 }
 
-int SceneBuilder::accessor(const void* data, size_t size, int component_type, size_t count, const char* type) {
+int SceneBuilder::accessor(const void* data, size_t size, int component_type, size_t count,
+                           const char* type) {
     json& buffers = document["buffers"];
-    buffers.push_back({{"byteLength", size},
-                       {"uri", "data:application/octet-stream;base64," + base64(static_cast<const uint8_t*>(data), size)}});
+    buffers.push_back(
+        {{"byteLength", size},
+         {"uri", "data:application/octet-stream;base64," + base64(static_cast<const uint8_t*>(data), size)}});
     document["bufferViews"].push_back({{"buffer", buffers.size() - 1}, {"byteLength", size}});
-    document["accessors"].push_back({{"bufferView", document["bufferViews"].size() - 1}, {"componentType", component_type},
-                                     {"count", count}, {"type", type}});
+    document["accessors"].push_back({{"bufferView", document["bufferViews"].size() - 1},
+                                     {"componentType", component_type},
+                                     {"count", count},
+                                     {"type", type}});
     return int(document["accessors"].size()) - 1;
 }
 
-void SceneBuilder::mesh(const std::vector<glm::vec3>& positions, const std::vector<uint32_t>& indices, int material,
-                        const Place& place) {
+void SceneBuilder::mesh(const std::vector<glm::vec3>& positions, const std::vector<uint32_t>& indices,
+                        int material, const Place& place) {
     glm::vec3 lo(INFINITY), hi(-INFINITY);
     for (const glm::vec3& p : positions) lo = glm::min(lo, p), hi = glm::max(hi, p);
     const int position = accessor(positions.data(), positions.size() * 12, 5126, positions.size(), "VEC3");
@@ -109,18 +114,21 @@ void SceneBuilder::mesh(const std::vector<glm::vec3>& positions, const std::vect
     document["accessors"].back()["max"] = {hi.x, hi.y, hi.z};
     const int index = accessor(indices.data(), indices.size() * 4, 5125, indices.size(), "SCALAR");
     document["meshes"].push_back(
-        {{"primitives", {{{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", material}}}}});
+        {{"primitives",
+          {{{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", material}}}}});
     node({{"mesh", document["meshes"].size() - 1}}, place);
 }
 
 void SceneBuilder::orthographic(double ymag, const Place& place, const std::string& name) {
-    document["cameras"].push_back({{"type", "orthographic"},
-                                   {"orthographic", {{"xmag", ymag}, {"ymag", ymag}, {"znear", 0.0}, {"zfar", 100.0}}}});
+    document["cameras"].push_back(
+        {{"type", "orthographic"},
+         {"orthographic", {{"xmag", ymag}, {"ymag", ymag}, {"znear", 0.0}, {"zfar", 100.0}}}});
     node({{"camera", document["cameras"].size() - 1}, {"name", name}}, place);
 }
 
 void SceneBuilder::perspective(double yfov, const Place& place, const std::string& name) {
-    document["cameras"].push_back({{"type", "perspective"}, {"perspective", {{"yfov", yfov}, {"znear", 0.001}}}});
+    document["cameras"].push_back(
+        {{"type", "perspective"}, {"perspective", {{"yfov", yfov}, {"znear", 0.001}}}});
     node({{"camera", document["cameras"].size() - 1}, {"name", name}}, place);
 }
 
@@ -148,7 +156,8 @@ void add_box(SceneBuilder& scene, const glm::vec3& size, int material, bool inwa
     std::vector<glm::vec3> corners;
     for (int i = 0; i < 8; ++i)
         corners.push_back(size * (glm::vec3(float(i & 1), float(i >> 1 & 1), float(i >> 2)) - 0.5f));
-    const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                  {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     std::vector<uint32_t> indices;
     for (const auto& q : quads)
         for (const int k : {0, 1, 2, 0, 2, 3}) indices.push_back(q[inward ? 3 - k : k]);
@@ -211,7 +220,8 @@ Estimates render_estimates(const SceneDescription& description, const RenderPlan
     return render_estimates(scene, plan);
 }
 
-FilmState render_film(Scene& scene, const RenderPlan& plan, Schedule schedule, const std::vector<uint32_t>& batches) {
+FilmState render_film(Scene& scene, const RenderPlan& plan, Schedule schedule,
+                      const std::vector<uint32_t>& batches) {
     RenderPlan with = plan;
     with.schedule = schedule;
     Renderer renderer(test_device(), scene, settings_of(scene, with));
@@ -229,7 +239,9 @@ Agreement agreement(const Estimates& e, const std::vector<double>& expected, uin
     };
     std::vector<Cell> cells(size_t(columns) * rows * 3);
     std::vector<double> neighbourhood(cells.size());
-    const auto cell_at = [&](uint32_t column, uint32_t row, int c) { return 3 * (size_t(row) * columns + column) + size_t(c); };
+    const auto cell_at = [&](uint32_t column, uint32_t row, int c) {
+        return 3 * (size_t(row) * columns + column) + size_t(c);
+    };
     for (uint32_t row = 0; row < rows; ++row)
         for (uint32_t column = 0; column < columns; ++column)
             for (int c = 0; c < 3; ++c) {
@@ -237,25 +249,30 @@ Agreement agreement(const Estimates& e, const std::vector<double>& expected, uin
                 std::vector<double> means(e.seeds, 0.0);
                 for (uint32_t y = 0; y < tile; ++y)
                     for (uint32_t x = 0; x < tile; ++x) {
-                        const size_t i = 3 * (size_t(area.y0 + row * tile + y) * e.width + area.x0 + column * tile + x) + size_t(c);
-                        for (uint32_t s = 0; s < e.seeds; ++s) means[s] += e.images[s][i] / double(tile * tile);
+                        const size_t i =
+                            3 * (size_t(area.y0 + row * tile + y) * e.width + area.x0 + column * tile + x) +
+                            size_t(c);
+                        for (uint32_t s = 0; s < e.seeds; ++s)
+                            means[s] += e.images[s][i] / double(tile * tile);
                         cell.expected += expected[i] / (tile * tile);
-                        if (!expected_sd.empty()) cell.expected_variance += expected_sd[i] * expected_sd[i] / std::pow(tile, 4);
+                        if (!expected_sd.empty())
+                            cell.expected_variance += expected_sd[i] * expected_sd[i] / std::pow(tile, 4);
                     }
                 Moments moments;
                 for (const double m : means) moments.add(m);
                 cell.mean = moments.mean;
                 cell.variance = moments.standard_error() * moments.standard_error();
             }
-    // A few seeds alone tell a pixel's variance badly, worst where a rare bright path is missing from all of them: it is
-    // at least half the mean variance of the pixels around.
+    // A few seeds alone tell a pixel's variance badly, worst where a rare bright path is missing from all of
+    // them: it is at least half the mean variance of the pixels around.
     const int reach = 2;
     for (int row = 0; row < int(rows); ++row)
         for (int column = 0; column < int(columns); ++column)
             for (int c = 0; c < 3; ++c) {
                 double sum = 0, count = 0;
                 for (int y = std::max(0, row - reach); y <= std::min(int(rows) - 1, row + reach); ++y)
-                    for (int x = std::max(0, column - reach); x <= std::min(int(columns) - 1, column + reach); ++x)
+                    for (int x = std::max(0, column - reach); x <= std::min(int(columns) - 1, column + reach);
+                         ++x)
                         sum += cells[cell_at(uint32_t(x), uint32_t(y), c)].variance, ++count;
                 neighbourhood[cell_at(uint32_t(column), uint32_t(row), c)] = sum / count;
             }
@@ -270,7 +287,8 @@ Agreement agreement(const Estimates& e, const std::vector<double>& expected, uin
                 const Cell& cell = cells[i];
                 // Sums of float32 samples are exact to about this.
                 const double rounding = 1e-6 * std::fabs(cell.expected);
-                const double variance = std::max(cell.variance, 0.5 * neighbourhood[i]) + cell.expected_variance + rounding * rounding;
+                const double variance = std::max(cell.variance, 0.5 * neighbourhood[i]) +
+                                        cell.expected_variance + rounding * rounding;
                 const double difference = cell.mean - cell.expected;
                 const double z = difference == 0 ? 0 : variance > 0 ? difference / std::sqrt(variance) : 1e30;
                 const double p = student_two_sided(std::fabs(z), e.seeds - 1);
@@ -286,8 +304,8 @@ Agreement agreement(const Estimates& e, const std::vector<double>& expected, uin
 }
 
 std::string describe(const Agreement& a) {
-    return fmt::format("least p {:.3g} (limit {:.3g}, {} tests), z {:.2f} at ({}, {}), rms z {:.3f}", a.least_p, a.p_limit, a.tests,
-                       a.worst_z, a.x, a.y, a.rms_z);
+    return fmt::format("least p {:.3g} (limit {:.3g}, {} tests), z {:.2f} at ({}, {}), rms z {:.3f}",
+                       a.least_p, a.p_limit, a.tests, a.worst_z, a.x, a.y, a.rms_z);
 }
 
 double window_mean(const std::vector<double>& values, uint32_t width, const Window& window, int channel) {
@@ -296,7 +314,8 @@ double window_mean(const std::vector<double>& values, uint32_t width, const Wind
     for (uint32_t y = area.y0; y < area.y1; ++y)
         for (uint32_t x = area.x0; x < area.x1; ++x)
             for (int c = 0; c < 3; ++c)
-                if (channel < 0 || c == channel) sum += values[3 * (size_t(y) * width + x) + size_t(c)], ++count;
+                if (channel < 0 || c == channel)
+                    sum += values[3 * (size_t(y) * width + x) + size_t(c)], ++count;
     return sum / count;
 }
 
@@ -314,7 +333,8 @@ std::optional<std::filesystem::path> shared_file(const std::string& name) {
     if (std::getenv("ETENDUE_ALLOW_MISSING_SHARED"))
         MESSAGE("left out: there is no ", name);
     else
-        FAIL_CHECK((folder / name).string(), " is missing; ETENDUE_SHARED names the folder of reference scenes");
+        FAIL_CHECK((folder / name).string(),
+                   " is missing; ETENDUE_SHARED names the folder of reference scenes");
     return std::nullopt;
 }
 

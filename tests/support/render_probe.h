@@ -1,5 +1,5 @@
-// Whole scenes, written in code or read from the reference folder, rendered as the library renders them and compared
-// with what they must show.
+// Whole scenes, written in code or read from the reference folder, rendered as the library renders them and
+// compared with what they must show.
 #pragma once
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
@@ -20,21 +20,25 @@ inline Place at(double x, double y, double z) { return {{x, y, z}}; }
 Place facing_down(double x, double y, double z);
 Place facing_x(double x, double y, double z);  // +z becomes +x, y stays
 
-// A glTF document that grows object by object. All nodes hang on one root node, which may be moved and scaled.
+// A glTF document that grows object by object. All nodes hang on one root node, which may be moved and
+// scaled.
 class SceneBuilder {
   public:
     nlohmann::json document;
     SceneBuilder();
     // `optics`: the material's ETD_optics; `more`: other members of the glTF material. Returns its index.
     int material(nlohmann::json optics, nlohmann::json more = nlohmann::json::object());
-    int lambertian(nlohmann::json reflectance) { return surface({{"class", "lambertian"}, {"reflectance", reflectance}}); }
+    int lambertian(nlohmann::json reflectance) {
+        return surface({{"class", "lambertian"}, {"reflectance", reflectance}});
+    }
     int surface(nlohmann::json surface) { return material({{"surface", std::move(surface)}}); }
     int black_emitter(nlohmann::json radiance);  // reflects nothing
     void shape(nlohmann::json geometry, int material, const Place& place);
     void sphere(double radius, int material, const Place& place);
     void rectangle(double width, double height, int material, const Place& place);
     void light(nlohmann::json punctual, const Place& place);  // of KHR_lights_punctual
-    void mesh(const std::vector<glm::vec3>& positions, const std::vector<uint32_t>& indices, int material, const Place& place);
+    void mesh(const std::vector<glm::vec3>& positions, const std::vector<uint32_t>& indices, int material,
+              const Place& place);
     void orthographic(double ymag, const Place& place, const std::string& name = "camera");
     void perspective(double yfov, const Place& place, const std::string& name = "camera");
     void environment(nlohmann::json radiance);
@@ -64,7 +68,9 @@ struct Estimates {
     std::vector<std::vector<float>> images;  // one a seed
     std::vector<double> mean;
     RenderCounters counters;  // of all seeds
-    double at(uint32_t x, uint32_t y, int channel) const { return mean[3 * (size_t(y) * width + x) + channel]; }
+    double at(uint32_t x, uint32_t y, int channel) const {
+        return mean[3 * (size_t(y) * width + x) + channel];
+    }
 };
 
 Scene compile_test_scene(const SceneDescription& description);
@@ -72,15 +78,17 @@ Estimates render_estimates(Scene& scene, const RenderPlan& plan);
 Estimates render_estimates(const SceneDescription& description, const RenderPlan& plan);
 
 // The film of one seed, bit by bit.
-FilmState render_film(Scene& scene, const RenderPlan& plan, Schedule schedule, const std::vector<uint32_t>& batches);
+FilmState render_film(Scene& scene, const RenderPlan& plan, Schedule schedule,
+                      const std::vector<uint32_t>& batches);
 
 // Pixels that a comparison looks at; all by default.
 struct Window {
     uint32_t x = 0, y = 0, width = UINT32_MAX, height = UINT32_MAX;
 };
 
-// How the estimates differ from what is expected, by tiles of tile * tile pixels (1: single pixels) in units of their
-// standard error. `expected_sd`: noise of the expected values themselves, empty = none; it is independent between pixels.
+// How the estimates differ from what is expected, by tiles of tile * tile pixels (1: single pixels) in units
+// of their standard error. `expected_sd`: noise of the expected values themselves, empty = none; it is
+// independent between pixels.
 struct Agreement {
     size_t tests = 0;
     double least_p = 1, p_limit = 0, rms_z = 0, worst_z = 0;
@@ -94,11 +102,12 @@ std::string describe(const Agreement& agreement);
 struct WindowMean {
     double mean = 0, standard_error = 0;
 };
-WindowMean window_mean(const Estimates& estimates, const Window& window = {}, int channel = -1);  // -1: all three
+WindowMean window_mean(const Estimates& estimates, const Window& window = {},
+                       int channel = -1);  // -1: all three
 double window_mean(const std::vector<double>& values, uint32_t width, const Window& window, int channel = -1);
 
-// A file of the reference scenes. Nothing where it is missing, which fails the test unless the environment says
-// ETENDUE_ALLOW_MISSING_SHARED.
+// A file of the reference scenes. Nothing where it is missing, which fails the test unless the environment
+// says ETENDUE_ALLOW_MISSING_SHARED.
 std::optional<std::filesystem::path> shared_file(const std::string& name);
 
 }  // namespace etendue
