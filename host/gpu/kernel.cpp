@@ -144,7 +144,7 @@ void CommandList::stamp(VkPipelineStageFlagBits stage) {
                         2 * pair + (stage == VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT));
 }
 
-void CommandList::prepare(const Kernel& kernel, std::initializer_list<PushValue> values) {
+void CommandList::prepare(const Kernel& kernel, const std::vector<PushValue>& values) {
     begin();
     vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline_);
     vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline_layout_, 0, 1,
@@ -164,7 +164,7 @@ void CommandList::prepare(const Kernel& kernel, std::initializer_list<PushValue>
     stamp(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT);
 }
 
-void CommandList::dispatch(const Kernel& kernel, uint32_t groups, std::initializer_list<PushValue> values) {
+void CommandList::dispatch(const Kernel& kernel, uint32_t groups, const std::vector<PushValue>& values) {
     prepare(kernel, values);
     vkCmdDispatch(commands_, groups, 1, 1);
     stamp(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
@@ -172,7 +172,7 @@ void CommandList::dispatch(const Kernel& kernel, uint32_t groups, std::initializ
 }
 
 void CommandList::dispatch_indirect(const Kernel& kernel, const Buffer& arguments, uint64_t offset,
-                                    std::initializer_list<PushValue> values) {
+                                    const std::vector<PushValue>& values) {
     prepare(kernel, values);
     vkCmdDispatchIndirect(commands_, arguments.handle(), offset);
     stamp(VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);

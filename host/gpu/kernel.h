@@ -2,7 +2,6 @@
 // lists of dispatches that are timed by kernel name.
 #pragma once
 #include <bit>
-#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -57,6 +56,9 @@ class Kernel {
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };
 
+// Groups of a dispatch that every device allows (Vulkan 1.3, table of required limits).
+constexpr uint32_t max_groups = 65535;
+
 struct KernelTiming {
     double seconds = 0;
     uint64_t dispatches = 0;
@@ -70,16 +72,16 @@ class CommandList {
     CommandList(const CommandList&) = delete;
     ~CommandList();
 
-    void dispatch(const Kernel& kernel, uint32_t groups, std::initializer_list<PushValue> values = {});
+    void dispatch(const Kernel& kernel, uint32_t groups, const std::vector<PushValue>& values = {});
     // Group counts are three words in `arguments` at `offset` bytes.
     void dispatch_indirect(const Kernel& kernel, const Buffer& arguments, uint64_t offset,
-                           std::initializer_list<PushValue> values = {});
+                           const std::vector<PushValue>& values = {});
     void fill(const Buffer& buffer, uint32_t word, uint64_t offset = 0, uint64_t bytes = VK_WHOLE_SIZE);
     // Submits, waits, and adds the time of each kernel to `timings` where one is given.
     void run(KernelTimings* timings = nullptr);
 
   private:
-    void prepare(const Kernel& kernel, std::initializer_list<PushValue> values);
+    void prepare(const Kernel& kernel, const std::vector<PushValue>& values);
     void begin();
     void barrier();
     void stamp(VkPipelineStageFlagBits stage);

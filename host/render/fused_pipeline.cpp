@@ -5,15 +5,13 @@
 namespace etendue {
 
 Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const RenderSettings& s,
-                                       const Buffer& film, const Buffer& counters)
+                                       const BufferTable& film)
     : Pipeline(s) {
-    trace_paths =
-        make_kernel(device, scene, "kernels/trace_paths.comp", {{"Film", &film}, {"CounterSums", &counters}});
+    trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", film);
     // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
     const uint32_t pixels = settings.width * settings.height;
-    const uint32_t pixels_a_lane = device.description.type == "CPU" ? 8 : 1;
-    groups = std::max(1u, (pixels + trace_paths.group_size() * pixels_a_lane - 1) /
-                              (trace_paths.group_size() * pixels_a_lane));
+    const uint32_t pixels_a_group = trace_paths.group_size() * (device.description.type == "CPU" ? 8 : 1);
+    groups = std::clamp((pixels + pixels_a_group - 1) / pixels_a_group, 1u, max_groups);
 }
 
 void Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_t count,

@@ -16,8 +16,7 @@ struct Renderer::Pipeline {
 };
 
 struct Renderer::FusedPipeline : Pipeline {
-    FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film,
-                  const Buffer& counters);
+    FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const BufferTable& film);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     Kernel trace_paths;
@@ -25,8 +24,7 @@ struct Renderer::FusedPipeline : Pipeline {
 };
 
 struct Renderer::WavefrontPipeline : Pipeline {
-    WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Buffer& film,
-                      const Buffer& counters);
+    WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings, const BufferTable& film);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     // One batch: `samples` samples of the pixels [first_pixel, first_pixel + pixels).

@@ -66,15 +66,19 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       settings_(settings),
       schedule_(settings.schedule),
       film_(device, uint64_t(settings.width) * settings.height * sizeof(FilmPixel), "Film"),
+      film_address_(create_buffer(device, std::vector<uint64_t>{film_.address()}, "FilmAddress")),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
       commands_(device) {
     film_.fill(0);
     counter_sums_.fill(0);
+    scene.features.film_by_address =
+        film_.bytes() > (settings.binding_bytes ? settings.binding_bytes : device.description.max_buffer_range);
+    const BufferTable film = {{"Film", &film_}, {"FilmAddress", &film_address_}, {"CounterSums", &counter_sums_}};
     if (schedule_ == Schedule::automatic) schedule_ = choose_schedule(scene);
     if (schedule_ == Schedule::fused)
-        pipeline_ = std::make_unique<FusedPipeline>(device, scene, settings_, film_, counter_sums_);
+        pipeline_ = std::make_unique<FusedPipeline>(device, scene, settings_, film);
     else
-        pipeline_ = std::make_unique<WavefrontPipeline>(device, scene, settings_, film_, counter_sums_);
+        pipeline_ = std::make_unique<WavefrontPipeline>(device, scene, settings_, film);
     const auto start = std::chrono::steady_clock::now();
     pipeline_->warm_up(commands_);
     warm_up_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -145,17 +149,24 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
         glm::vec3 albedo, normal;
         float depth;
     };
-    const size_t pixels = pixel_count(image);
-    const Buffer buffer(device_, pixels * sizeof(Aov), "Aovs");
+    const size_t pixels = pixel_count(image), band = std::min<size_t>(pixels, 1 << 20);  // fits in a binding
+    const Buffer buffer(device_, band * sizeof(Aov), "Aovs");
     const Kernel kernel = make_kernel(device_, scene_, "kernels/trace_aovs.comp", {{"Aovs", &buffer}});
-    commands_.dispatch(kernel, uint32_t((pixels + kernel.group_size() - 1) / kernel.group_size()),
-                       {{"receiver", settings_.receiver},
-                        {"width", settings_.width},
-                        {"height", settings_.height},
-                        {"sample_count", count},
-                        {"seed", settings_.seed}});
-    commands_.run(&timings_);
-    const auto aovs = buffer.read_array<Aov>(pixels);
+    std::vector<Aov> aovs;
+    for (size_t first = 0; first < pixels; first += band) {
+        const size_t count_here = std::min(band, pixels - first);
+        commands_.dispatch(kernel, uint32_t((count_here + kernel.group_size() - 1) / kernel.group_size()),
+                           {{"receiver", settings_.receiver},
+                            {"first_pixel", uint32_t(first)},
+                            {"pixel_count", uint32_t(count_here)},
+                            {"width", settings_.width},
+                            {"height", settings_.height},
+                            {"sample_count", count},
+                            {"seed", settings_.seed}});
+        commands_.run(&timings_);
+        const auto part = buffer.read_array<Aov>(count_here);
+        aovs.insert(aovs.end(), part.begin(), part.end());
+    }
     add_channels(image, {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"},
                  std::span(&aovs[0].albedo.x, 7 * pixels), 7);
 }

@@ -21,6 +21,7 @@ struct RenderSettings {
     uint32_t receiver = no_record;  // RecordRef
     uint32_t seed = 0;
     Schedule schedule = Schedule::automatic;
+    uint64_t binding_bytes = 0;  // a larger film is written through its address; 0 = what the device can bind
 };
 
 // Sums over all passes. Importance: every path starts with 1.
@@ -77,7 +78,7 @@ class Renderer {
     Scene& scene_;
     RenderSettings settings_;
     Schedule schedule_;
-    Buffer film_, counter_sums_;
+    Buffer film_, film_address_, counter_sums_;
     std::unique_ptr<Pipeline> pipeline_;
     CommandList commands_;
     KernelTimings timings_;

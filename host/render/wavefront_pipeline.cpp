@@ -11,7 +11,7 @@ constexpr uint32_t cpu_slots = 1 << 16, gpu_slots = 1 << 20;
 }  // namespace
 
 Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& s,
-                                               const Buffer& film, const Buffer& counters)
+                                               const BufferTable& film)
     : Pipeline(s) {
     const bool cpu = device.description.type == "CPU";
     const uint32_t pixels = settings.width * settings.height;
@@ -26,16 +26,15 @@ Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, con
     queue_counts = Buffer(device, (2 * bounces_a_submission + 2) * 4, "QueueCounts");
     hits = Buffer(device, uint64_t(slots) * 16, "Hits");
     hit_instances = Buffer(device, scene.features.instances ? uint64_t(slots) * 4 : 0, "HitInstances");
-    const BufferTable table = {{"RayOrigins", &ray_origins},
+    BufferTable table = {{"RayOrigins", &ray_origins},
                                {"RayDirections", &ray_directions},
                                {"PathStates", &path_states},
                                {"ShadowRays", &shadow_rays},
                                {"RayQueue", &ray_queue},
                                {"QueueCounts", &queue_counts},
                                {"Hits", &hits},
-                               {"HitInstances", &hit_instances},
-                               {"Film", &film},
-                               {"CounterSums", &counters}};
+                               {"HitInstances", &hit_instances}};
+    table.insert(film.begin(), film.end());
     emit_camera_rays = make_kernel(device, scene, "kernels/emit_camera_rays.comp", table);
     find_hits = make_kernel(device, scene, "kernels/find_hits.comp", table, "#define HAS_RAY_QUEUE 1\n");
     scatter_paths = make_kernel(device, scene, "kernels/scatter_paths.comp", table);

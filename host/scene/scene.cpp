@@ -132,10 +132,15 @@ void SceneCompiler::write_headers() {
 }
 
 void SceneCompiler::run_once(const std::string& file, uint32_t items, const BufferTable& buffers,
-                             std::initializer_list<PushValue> values) {
+                             std::vector<PushValue> values) {
     const Kernel kernel = make_kernel(device_, out_, file, buffers);
+    const uint32_t size = kernel.group_size();
     CommandList list(device_);
-    list.dispatch(kernel, (items + kernel.group_size() - 1) / kernel.group_size(), values);
+    values.push_back({"first", 0u});
+    for (uint32_t first = 0; first < items; first += std::min(items - first, max_groups * size)) {
+        values.back().bits = first;
+        list.dispatch(kernel, std::min((items - first + size - 1) / size, max_groups), values);
+    }
     list.run();
 }
 

@@ -10,14 +10,14 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     Counters counters = no_counters();
     if (i < tile_pixels) {
-        FilmPixel pixel = film[first_pixel + i];
+        FilmPixel pixel = film_at(first_pixel + i);
         for (uint s = 0u; s < samples; ++s) {
             Spectrum radiance = path_states[s * tile_pixels + i].radiance;
             bool finite = is_finite(radiance);
             counters.non_finite += finite ? 0u : 1u;
             add_sample(pixel, finite ? radiance : Spectrum(0));
         }
-        film[first_pixel + i] = pixel;
+        film_at(first_pixel + i) = pixel;
     }
     store_counters(counters);
 }

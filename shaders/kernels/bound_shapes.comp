@@ -5,10 +5,10 @@
 layout(local_size_x = 64) in;
 layout(scalar, set = 0) readonly buffer ShapeRefs { uint shape_refs[]; };
 layout(scalar, set = 0) buffer ShapeBounds { vec3 shape_bounds[]; };
-layout(push_constant) uniform Push { uint count; };
+layout(push_constant) uniform Push { uint first, count; };
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = first + gl_GlobalInvocationID.x;
     if (i >= count) return;
     vec3 lo, hi;
     geometry_bounds(shape_refs[i], lo, hi);

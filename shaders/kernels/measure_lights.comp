@@ -6,7 +6,7 @@
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
-    uint light_count;
+    uint first, light_count;
     float scene_x, scene_y, scene_z, scene_radius;  // m, a sphere around the scene
 };
 
@@ -24,7 +24,7 @@ layout(scalar, set = 0) readonly buffer Lights { uint lights[]; };
 layout(scalar, set = 0) writeonly buffer LightBoundsTable { LightBounds light_bounds_table[]; };
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = first + gl_GlobalInvocationID.x;
     if (i >= light_count) return;
     LightBounds b;
     light_bounds(lights[i], b.lo, b.hi);

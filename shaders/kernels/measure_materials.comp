@@ -6,10 +6,10 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, set = 0) buffer MaterialOpacity { uint material_is_opaque[]; };
-layout(push_constant) uniform Push { uint count; };
+layout(push_constant) uniform Push { uint first, count; };
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = first + gl_GlobalInvocationID.x;
     if (i >= count) return;
     Material m = materials[i];
     SurfaceContext c = SurfaceContext(vec2(0), vec2(0), vec4(1), 1.0, 1.0, false);

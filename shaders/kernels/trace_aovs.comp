@@ -5,6 +5,7 @@ layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
     uint receiver;
+    uint first_pixel, pixel_count;  // of this dispatch
     uint width;
     uint height;
     uint sample_count;
@@ -23,21 +24,22 @@ struct Aov {
 layout(scalar, set = 0) buffer Aovs { Aov aovs[]; };
 
 void main() {
-    uint pixel = gl_GlobalInvocationID.x;
-    if (pixel >= width * height) return;
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= pixel_count) return;
+    uint pixel = first_pixel + i;
     Aov sum = Aov(vec3(0), vec3(0), 0.0);
     float hits = 0.0;
-    for (uint i = 0u; i < sample_count; ++i) {
-        Path path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), i, seed);
+    for (uint s = 0u; s < sample_count; ++s) {
+        Path path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), s, seed);
         Hit hit = find_hit(path.origin, path.direction, INFINITY);
         if (hit.primitive == NO_RECORD) continue;
         SurfacePoint p = locate(hit, path.origin, path.direction);
-        ScatteringPoint s = scattering_point(p, path.direction, path.medium, false);
-        BsdfSample b = surface_sample(s.surface, s.context, s.wo, sample_3d(path.random));
+        ScatteringPoint point = scattering_point(p, path.direction, path.medium, false);
+        BsdfSample b = surface_sample(point.surface, point.context, point.wo, sample_3d(path.random));
         sum.albedo += b.weight;
-        sum.normal += s.frame[2];
+        sum.normal += point.frame[2];
         sum.depth += hit.t;
         hits += 1.0;
     }
-    aovs[pixel] = Aov(sum.albedo / float(sample_count), sum.normal / float(sample_count), hits > 0.0 ? sum.depth / hits : 0.0);
+    aovs[i] = Aov(sum.albedo / float(sample_count), sum.normal / float(sample_count), hits > 0.0 ? sum.depth / hits : 0.0);
 }

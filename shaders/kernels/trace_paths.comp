@@ -28,7 +28,7 @@ void main() {
     Path path;
     bool alive = false;
     FilmPixel sum;
-    if (pixel < pixels) sum = film[pixel];
+    if (pixel < pixels) sum = film_at(pixel);
     while (pixel < pixels) {
         if (!alive)
             path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height),
@@ -42,10 +42,10 @@ void main() {
             if (is_finite(path.radiance)) add_sample(sum, path.radiance);
             else counters.non_finite++, add_sample(sum, vec3(0));
             if (++sample_index == sample_count) {
-                film[pixel] = sum;
+                film_at(pixel) = sum;
                 pixel += lanes;
                 sample_index = 0u;
-                if (pixel < pixels) sum = film[pixel];
+                if (pixel < pixels) sum = film_at(pixel);
             }
         }
     }

@@ -25,7 +25,9 @@ std::vector<std::byte> film_of(const SceneDescription& description, uint64_t bin
     RenderSettings settings;
     settings.width = settings.height = 32;
     settings.receiver = scene.receivers.front().ref;
+    settings.binding_bytes = binding_bytes;
     Renderer renderer(test_device(), scene, settings);
+    CHECK(scene.features.film_by_address == expect_by_address);
     renderer.render_passes(2);
     return renderer.state().pixels;
 }
