@@ -213,8 +213,10 @@ std::vector<DeviceDescription> list_devices() {
     return result;
 }
 
-std::unique_ptr<Device> create_device(const DeviceOptions& options) {
+std::unique_ptr<Device> create_device(const DeviceOptions& given) {
     auto device = std::make_unique<Device>();
+    DeviceOptions options = given;
+    if (std::getenv("ETENDUE_VALIDATION")) options.validation = device->print_validation = true;
     if (options.validation && !has_layer(validation_layer))
         fail_device("the validation layer {} is not installed", validation_layer);
     device->debug_names = options.validation && has_instance_extension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -262,6 +264,8 @@ std::unique_ptr<Device> create_device(const DeviceOptions& options) {
 }
 
 Device::~Device() {
+    if (print_validation)
+        for (const std::string& message : validation_messages) fmt::print(stderr, "validation: {}\n", message);
     if (handle) {
         vkDeviceWaitIdle(handle);
         if (command_pool) vkDestroyCommandPool(handle, command_pool, nullptr);

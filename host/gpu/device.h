@@ -24,8 +24,9 @@ struct DeviceDescription {
 
 struct DeviceOptions {
     std::string selector;  // index, or part of the name; empty = the default device
-    bool validation =
-        false;  // Khronos validation layer; its messages are collected in Device::validation_messages
+    // Khronos validation layer; its messages are collected in Device::validation_messages. The environment
+    // variable ETENDUE_VALIDATION turns it on for any program, which then prints them at its end.
+    bool validation = false;
 };
 
 struct Device {
@@ -42,6 +43,7 @@ struct Device {
     bool debug_names = false;
     uint64_t bytes_allocated = 0, peak_bytes_allocated = 0;
     std::vector<std::string> validation_messages;
+    bool print_validation = false;
 
     Device() = default;
     Device(const Device&) = delete;

@@ -57,6 +57,7 @@ struct Program {
         run.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
         run.out = read_text(folder / "stdout.txt");
         run.err = read_text(folder / "stderr.txt");
+        CHECK_MESSAGE(run.err.find("validation:") == std::string::npos, run.err);
         return run;
     }
 
