@@ -10,9 +10,11 @@ layout(scalar, set = 0) buffer CounterSums {
 Counters no_counters() { return Counters(0u, 0u, 0u, 0u, 0.0, 0.0); }
 
 void add_importance(uint slot, float value) {
-    float whole = floor(value);
-    atomicAdd(importance_sums[2u * slot], uint(whole));
-    atomicAdd(importance_sums[2u * slot + 1u], uint((value - whole) * 65536.0));
+    uint whole = uint(value);
+    uint fraction = uint((value - float(whole)) * 65536.0);
+    uint before = atomicAdd(importance_sums[2u * slot + 1u], fraction);
+    if (before + fraction < before) whole += 65536u;  // the sum of fractions has wrapped: carry
+    atomicAdd(importance_sums[2u * slot], whole);
 }
 
 void store_counters(Counters c) {
