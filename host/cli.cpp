@@ -105,7 +105,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     render
         ->add_option("--schedule", arguments.schedule,
                      "Whole paths in one kernel, or a kernel a stage (default: auto)")
-        ->option_text("auto|fused|wavefront");
+        ->option_text("auto|fused|wavefront|by-class");
     render->add_option("--seed", arguments.seed, "Seed of the random numbers (default: 0)")->option_text("N");
     render->add_option("--device", options.device, "Vulkan device (default: the best; see: etendue devices)")
         ->option_text("NAME|INDEX");
@@ -144,9 +144,11 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.polarization = parse_choice<PolarizationMode>(
         arguments.polarization, "--polarization",
         {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});
-    options.schedule = parse_choice<Schedule>(
-        arguments.schedule, "--schedule",
-        {{"auto", Schedule::automatic}, {"fused", Schedule::fused}, {"wavefront", Schedule::wavefront}});
+    options.schedule = parse_choice<Schedule>(arguments.schedule, "--schedule",
+                                              {{"auto", Schedule::automatic},
+                                               {"fused", Schedule::fused},
+                                               {"wavefront", Schedule::wavefront},
+                                               {"by-class", Schedule::by_class}});
     if (options.output.empty()) options.output = default_output(options.scene);
     if (options.output.extension() != ".exr")
         fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",

@@ -17,6 +17,7 @@ enum class Schedule {
     automatic,  // by the scene
     fused,      // whole paths in one kernel
     wavefront,  // a kernel a stage, paths in memory between them
+    by_class,   // the same, with a queue and a scattering kernel for each class of surfaces
 };
 
 struct ImageSize {

@@ -265,7 +265,8 @@ std::unique_ptr<Device> create_device(const DeviceOptions& given) {
 
 Device::~Device() {
     if (print_validation)
-        for (const std::string& message : validation_messages) fmt::print(stderr, "validation: {}\n", message);
+        for (const std::string& message : validation_messages)
+            fmt::print(stderr, "validation: {}\n", message);
     if (handle) {
         vkDeviceWaitIdle(handle);
         if (command_pool) vkDestroyCommandPool(handle, command_pool, nullptr);

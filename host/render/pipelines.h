@@ -24,17 +24,21 @@ struct Renderer::FusedPipeline : Pipeline {
 };
 
 struct Renderer::WavefrontPipeline : Pipeline {
-    WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings, const BufferTable& film);
+    WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings, const BufferTable& film,
+                      bool by_class);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     // One batch: `samples` samples of the pixels [first_pixel, first_pixel + pixels).
     void run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample,
                   uint32_t samples, KernelTimings& timings);
+    void make_scatter_kernels(Device& device, Scene& scene, BufferTable table, bool by_class);
     uint32_t slots = 0;         // paths in memory
     uint32_t items_a_lane = 1;  // of a queue
     Buffer ray_origins, ray_directions, path_states, shadow_rays, ray_queue, queue_counts, hits,
         hit_instances;
-    Kernel emit_camera_rays, find_hits, scatter_paths, find_occlusions, accumulate_film;
+    Buffer class_queues, class_counts;  // with a kernel for each class
+    Kernel emit_camera_rays, find_hits, sort_hits, find_occlusions, accumulate_film;
+    std::vector<Kernel> scatter_paths;  // one, or one for each class of surfaces
 };
 
 }  // namespace etendue

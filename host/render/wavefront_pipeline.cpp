@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "host/render/pipelines.h"
@@ -11,7 +13,7 @@ constexpr uint32_t cpu_slots = 1 << 16, gpu_slots = 1 << 20;
 }  // namespace
 
 Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& s,
-                                               const BufferTable& film)
+                                               const BufferTable& film, bool by_class)
     : Pipeline(s) {
     const bool cpu = device.description.type == "CPU";
     const uint32_t pixels = settings.width * settings.height;
@@ -27,20 +29,46 @@ Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, con
     hits = Buffer(device, uint64_t(slots) * 16, "Hits");
     hit_instances = Buffer(device, scene.features.instances ? uint64_t(slots) * 4 : 0, "HitInstances");
     BufferTable table = {{"RayOrigins", &ray_origins},
-                               {"RayDirections", &ray_directions},
-                               {"PathStates", &path_states},
-                               {"ShadowRays", &shadow_rays},
-                               {"RayQueue", &ray_queue},
-                               {"QueueCounts", &queue_counts},
-                               {"Hits", &hits},
-                               {"HitInstances", &hit_instances}};
+                         {"RayDirections", &ray_directions},
+                         {"PathStates", &path_states},
+                         {"ShadowRays", &shadow_rays},
+                         {"RayQueue", &ray_queue},
+                         {"QueueCounts", &queue_counts},
+                         {"Hits", &hits},
+                         {"HitInstances", &hit_instances}};
     table.insert(film.begin(), film.end());
     emit_camera_rays = make_kernel(device, scene, "kernels/emit_camera_rays.comp", table);
     find_hits = make_kernel(device, scene, "kernels/find_hits.comp", table, "#define HAS_RAY_QUEUE 1\n");
-    scatter_paths = make_kernel(device, scene, "kernels/scatter_paths.comp", table);
+    make_scatter_kernels(device, scene, table, by_class);
     if (scene.features.light_count > 0)
         find_occlusions = make_kernel(device, scene, "kernels/find_occlusions.comp", table);
     accumulate_film = make_kernel(device, scene, "kernels/accumulate_film.comp", table);
+}
+
+void Renderer::WavefrontPipeline::make_scatter_kernels(Device& device, Scene& scene, BufferTable table,
+                                                       bool by_class) {
+    const char* file = "kernels/scatter_paths.comp";
+    const std::vector<const ClassInfo*>& classes = scene.classes[Interface::surface];
+    if (!by_class || classes.empty()) {
+        scatter_paths.push_back(make_kernel(device, scene, file, table));
+        return;
+    }
+    const size_t count = classes.size();
+    class_queues = Buffer(device, uint64_t(slots) * 4 * count, "ClassQueues");
+    class_counts = Buffer(device, bounces_a_submission * 4 * count, "ClassCounts");
+    table["ClassQueues"] = &class_queues;
+    table["ClassCounts"] = &class_counts;
+    std::vector<std::string> tags;
+    for (const ClassInfo* info : classes) tags.push_back(fmt::format("{}u", info->tag));
+    const std::string shared = fmt::format("#define SCATTER_CLASS_COUNT {}\n", count);
+    sort_hits = make_kernel(device, scene, "kernels/sort_hits.comp", table,
+                            shared + fmt::format("const uint SCATTER_CLASS_TAGS[{0}] = uint[{0}]({1});\n",
+                                                 count, fmt::join(tags, ", ")));
+    for (size_t c = 0; c < count; ++c)
+        scatter_paths.push_back(
+            make_kernel(device, scene, file, table,
+                        shared + fmt::format("#define SCATTER_CLASS {}\n#define ONLY_SURFACE_CLASS {}\n", c,
+                                             classes[c]->tag)));
 }
 
 void Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
@@ -73,22 +101,27 @@ void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first
                        {"seed", settings.seed}});
     uint32_t alive = paths;
     for (uint32_t total = 0; alive > 0; total += bounces_a_submission) {
+        if (class_counts) commands.fill(class_counts, 0);
         for (uint32_t bounce = 0; bounce < bounces_a_submission; ++bounce) {
             // The queues take turns; a submission has an even number of bounces, so each starts with the
             // first.
             const uint32_t read = bounce % 2 ? slots : 0, write = bounce % 2 ? 0 : slots;
             commands.dispatch(find_hits, groups(find_hits, alive, items_a_lane),
                               {{"bounce", bounce}, {"read_queue", read}});
-            commands.dispatch(scatter_paths, groups(scatter_paths, alive, items_a_lane),
-                              {{"bounce", bounce},
-                               {"read_queue", read},
-                               {"write_queue", write},
-                               {"first_pixel", first_pixel},
-                               {"tile_pixels", pixels},
-                               {"first_sample", first_sample},
-                               {"width", settings.width},
-                               {"height", settings.height},
-                               {"seed", settings.seed}});
+            if (!sort_hits.name().empty())
+                commands.dispatch(sort_hits, groups(sort_hits, alive, items_a_lane),
+                                  {{"bounce", bounce}, {"read_queue", read}, {"slots", slots}});
+            for (uint32_t c = 0; c < scatter_paths.size(); ++c)
+                commands.dispatch(scatter_paths[c], groups(scatter_paths[c], alive, items_a_lane),
+                                  {{"bounce", bounce},
+                                   {"read_queue", sort_hits.name().empty() ? read : c * slots},
+                                   {"write_queue", write},
+                                   {"first_pixel", first_pixel},
+                                   {"tile_pixels", pixels},
+                                   {"first_sample", first_sample},
+                                   {"width", settings.width},
+                                   {"height", settings.height},
+                                   {"seed", settings.seed}});
             if (!find_occlusions.name().empty())
                 commands.dispatch(find_occlusions, groups(find_occlusions, alive, items_a_lane),
                                   {{"bounce", bounce}});
@@ -107,9 +140,11 @@ void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first
 
 void Renderer::WavefrontPipeline::warm_up(CommandList& commands) {
     commands.fill(queue_counts, 0);
+    if (class_counts) commands.fill(class_counts, 0);
     for (const Kernel* kernel :
-         {&emit_camera_rays, &find_hits, &scatter_paths, &find_occlusions, &accumulate_film})
+         {&emit_camera_rays, &find_hits, &sort_hits, &find_occlusions, &accumulate_film})
         if (!kernel->name().empty()) commands.dispatch(*kernel, 1);
+    for (const Kernel& kernel : scatter_paths) commands.dispatch(kernel, 1);
     commands.run();
 }
 

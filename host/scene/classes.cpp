@@ -228,9 +228,18 @@ void ClassRegistry::reflect(ClassInfo& info) const {
 
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
                          const std::map<std::string, std::string>& constants) {
-    std::string text = fmt::format("#define {}(X)", interface.table);
-    for (const ClassInfo* info : classes)
-        text += fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
+    // A kernel for one class of surfaces sets ONLY_SURFACE_CLASS to its tag: the dispatch then has one case.
+    std::string text, all = fmt::format("#define {}(X)", interface.table);
+    const bool split = interface.interface == Interface::surface && !classes.empty();
+    if (split) text += "#ifdef ONLY_SURFACE_CLASS\n";
+    for (const ClassInfo* info : classes) {
+        const std::string row = fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
+        if (split)
+            text += fmt::format("#if ONLY_SURFACE_CLASS == {}\n#define {}(X){}\n#endif\n", info->tag,
+                                interface.table, row);
+        all += row;
+    }
+    text += split ? "#else\n" + all + "\n#endif\n" : all;
     text += '\n';
     for (const ClassInfo* info : classes) {
         text += fmt::format("#include \"{}\"\n", info->file);

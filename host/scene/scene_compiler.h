@@ -37,7 +37,8 @@ class SceneCompiler {
     Added add_record(Interface interface, const ObjectDescription& object,
                      const std::optional<glm::dmat4>& placement = {});
     std::vector<uint32_t> references(Interface interface, const std::vector<Added>& added);
-    // Runs a kernel that asks the classes something, a lane an item; the push constant `first` is the first lane's item.
+    // Runs a kernel that asks the classes something, a lane an item; the push constant `first` is the first
+    // lane's item.
     void run_once(const std::string& file, uint32_t items, const BufferTable& buffers,
                   std::vector<PushValue> values);
 

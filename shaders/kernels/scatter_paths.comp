@@ -1,4 +1,5 @@
 // One event of every path in the queue: media crossed, emission collected, a light sampled, a new direction chosen.
+// With SCATTER_CLASS only the paths that sort_hits has dealt to that class (ONLY_SURFACE_CLASS is its tag).
 // Reads: the ray queue of this bounce, hits, path state, scene. Writes: path state, the shadow rays and the ray queue of
 // the next bounce with their counts, counters. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
@@ -17,7 +18,11 @@ layout(scalar, set = 0) readonly buffer HitInstances { uint hit_instances[]; };
 
 void main() {
     Tile tile = Tile(first_pixel, tile_pixels, first_sample, width, height, seed);
+#ifdef SCATTER_CLASS
+    uint count = class_counts[bounce * SCATTER_CLASS_COUNT + SCATTER_CLASS];
+#else
     uint count = queue_counts[2u * bounce];
+#endif
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     Counters counters = no_counters();
     // All lanes of a group go round together, so that they can append together.
@@ -27,7 +32,11 @@ void main() {
         ShadowRay shadow = no_shadow_ray();
         uint slot = 0u;
         if (i < count) {
+#ifdef SCATTER_CLASS
+            slot = class_queues[read_queue + i];
+#else
             slot = ray_queue[read_queue + i];
+#endif
             Path path = load_path(tile, slot);
             vec4 h = hits[slot];
             Hit hit = Hit(h.x, h.yz, floatBitsToUint(h.w), NO_RECORD);

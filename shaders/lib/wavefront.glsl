@@ -31,6 +31,10 @@ layout(scalar, set = 0) buffer ShadowRays { ShadowState shadow_rays[]; };
 layout(scalar, set = 0) buffer RayQueue { uint ray_queue[]; };    // two of them, one behind the other: read and written in turn
 layout(scalar, set = 0) buffer QueueCounts { uint queue_counts[]; };  // of bounce b: rays at 2 b, shadow rays at 2 b + 1
 
+// With a kernel for each class of surfaces: a queue for each, and its count at bounce * SCATTER_CLASS_COUNT + class.
+layout(scalar, set = 0) buffer ClassQueues { uint class_queues[]; };
+layout(scalar, set = 0) buffer ClassCounts { uint class_counts[]; };
+
 struct Tile {
     uint first_pixel, pixels, first_sample, width, height, seed;
 };

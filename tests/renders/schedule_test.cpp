@@ -48,6 +48,7 @@ TEST_CASE("fused and wavefront schedules, batches and resumption give the same f
     const FilmState wavefront = render_film(scene, plan, Schedule::wavefront, {16});
     CHECK(same_bits(fused, wavefront));
     CHECK(same_bits(fused, render_film(scene, plan, Schedule::wavefront, {3, 13})));
+    CHECK(same_bits(fused, render_film(scene, plan, Schedule::by_class, {16})));
     CHECK(fused.counters.rays == wavefront.counters.rays);
     CHECK(fused.counters.shadow_rays == wavefront.counters.shadow_rays);
     CHECK(fused.counters.escaped == doctest::Approx(wavefront.counters.escaped).epsilon(1e-6));
