@@ -40,16 +40,16 @@ int classes_command(const ClassesOptions& options) {
     bool found = false;
     for (const InterfaceInfo& interface : all_interfaces()) {
         const auto& classes = registry.classes(interface.interface);
-        if (options.name.empty()) {
-            fmt::print("{}:", interface.name);
-            for (const ClassInfo& info : classes) fmt::print(" {}", info.name);
-            fmt::print("{}\n", classes.empty() ? " (none)" : "");
+        if (options.name.empty()) fmt::print("{}{}\n", interface.name, classes.empty() ? ": none" : "");
+        for (const ClassInfo& listed : classes) {
+            if (!options.name.empty() && listed.name != options.name) continue;
+            const ClassInfo& info = *registry.find(interface.interface, listed.name);  // compiles it
+            found = true;
+            if (options.name.empty())
+                fmt::print("    {:<16} {}\n", info.name, info.summary.substr(0, info.summary.find('\n')));
+            else
+                print_class(info);
         }
-        for (const ClassInfo& info : classes)
-            if (info.name == options.name) {
-                print_class(*registry.find(interface.interface, info.name));
-                found = true;
-            }
     }
     if (!options.name.empty() && !found)
         fail_input("classes {}: no such class; `etendue classes` lists them", options.name);
