@@ -10,16 +10,6 @@
 namespace etendue {
 namespace {
 
-// Twin of struct FilmPixel in shaders/lib/film.glsl.
-struct FilmPixel {
-    glm::vec3 sum;
-    float samples;
-    glm::vec3 compensation;
-    float reserved;
-    glm::vec3 squares;
-    float reserved_squares;
-};
-
 // Twin of CounterSums in shaders/lib/counters.glsl.
 struct CounterSums {
     uint32_t counts[4];
@@ -74,17 +64,14 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       scene_(scene),
       settings_(settings),
       schedule_(settings.schedule),
-      film_(device, uint64_t(settings.width) * settings.height * sizeof(FilmPixel), "Film"),
-      film_address_(create_buffer(device, std::vector<uint64_t>{film_.address()}, "FilmAddress")),
+      film_(device, settings.width, settings.height,
+            settings.binding_bytes ? settings.binding_bytes : device.description.max_buffer_range),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
       commands_(device) {
-    film_.fill(0);
     counter_sums_.fill(0);
-    scene.features.film_by_address =
-        film_.bytes() >
-        (settings.binding_bytes ? settings.binding_bytes : device.description.max_buffer_range);
-    const BufferTable film = {
-        {"Film", &film_}, {"FilmAddress", &film_address_}, {"CounterSums", &counter_sums_}};
+    scene.features.film_by_address = film_.by_address();
+    BufferTable film = film_.buffers();
+    film["CounterSums"] = &counter_sums_;
     if (schedule_ == Schedule::automatic) schedule_ = choose_schedule(scene);
     if (schedule_ == Schedule::fused)
         pipeline_ = std::make_unique<FusedPipeline>(device, scene, settings_, film);
@@ -110,7 +97,7 @@ void Renderer::render_passes(uint32_t count) {
 
 void Renderer::restart(uint32_t seed) {
     settings_.seed = pipeline_->settings.seed = seed;
-    film_.fill(0);
+    film_.clear();
     counter_sums_.fill(0);
     counters_ = {};
     passes_ = 0;
@@ -130,30 +117,6 @@ void Renderer::read_counters() {
     counters_.depth_limit += sums.counts[3];
     counters_.escaped += sums.importance[0] + sums.importance[1] / 65536.0;
     counters_.depth_limit_lost += sums.importance[2] + sums.importance[3] / 65536.0;
-}
-
-Image Renderer::develop() const {
-    Image image;
-    image.width = settings_.width, image.height = settings_.height;
-    const auto pixels = film_.read_array<FilmPixel>(pixel_count(image));
-    std::vector<glm::vec3> means(pixels.size()), errors(pixels.size());
-    for (size_t i = 0; i < pixels.size(); ++i) {
-        const FilmPixel& p = pixels[i];
-        const double n = p.samples;
-        if (n == 0) continue;
-        for (int c = 0; c < 3; ++c) {
-            const double mean = (double(p.sum[c]) + double(p.compensation[c])) / n;
-            means[i][c] = float(mean);
-            const double variance = std::max(0.0, double(p.squares[c]) / n - mean * mean);
-            errors[i][c] = n > 1 ? float(std::sqrt(variance / (n - 1))) : INFINITY;
-        }
-    }
-    const auto floats = [](const std::vector<glm::vec3>& v) {
-        return std::span<const float>(&v[0].x, 3 * v.size());
-    };
-    add_channels(image, {"R", "G", "B"}, floats(means), 3);
-    add_channels(image, {"error.R", "error.G", "error.B"}, floats(errors), 3);
-    return image;
 }
 
 void Renderer::add_aovs(Image& image, uint32_t count) {
@@ -183,39 +146,12 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
                  std::span(&aovs[0].albedo.x, 7 * pixels), 7);
 }
 
-FilmState Renderer::state() const {
-    FilmState state;
-    state.pixels.resize(uint64_t(settings_.width) * settings_.height * sizeof(FilmPixel));
-    film_.read(state.pixels.data(), state.pixels.size());
-    state.passes = passes_;
-    state.counters = counters_;
-    return state;
-}
+FilmState Renderer::state() const { return {film_.read(), passes_, counters_}; }
 
 void Renderer::restore(const FilmState& state) {
-    film_.write(state.pixels.data(), state.pixels.size());
+    film_.write(state.pixels);
     passes_ = state.passes;
     counters_ = state.counters;
-}
-
-double estimated_relative_error(const Image& image) {
-    double sum = 0;
-    for (const char* channel : {"R", "G", "B"}) {
-        const int value = find_channel(image, channel),
-                  error = find_channel(image, std::string("error.") + channel);
-        if (value < 0 || error < 0) return INFINITY;
-        const auto values = plane(image, size_t(value)), errors = plane(image, size_t(error));
-        double mean = 0;
-        for (float v : values) mean += v;
-        mean /= double(values.size());
-        const double floor = std::max(0.01 * mean * mean, 1e-300);
-        for (size_t i = 0; i < values.size(); ++i) {
-            if (std::isinf(errors[i])) return INFINITY;
-            sum += double(errors[i]) * errors[i] / (double(values[i]) * values[i] + floor) /
-                   (3.0 * double(values.size()));
-        }
-    }
-    return std::sqrt(sum);
 }
 
 }  // namespace etendue

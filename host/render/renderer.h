@@ -12,6 +12,7 @@
 #include "host/commands.h"
 #include "host/gpu/kernel.h"
 #include "host/image/image.h"
+#include "host/render/film.h"
 #include "host/scene/scene.h"
 
 namespace etendue {
@@ -32,7 +33,7 @@ struct RenderCounters {
 nlohmann::json to_json(const RenderCounters& counters);
 RenderCounters counters_from_json(const nlohmann::json& json);
 
-// What accumulates over passes; the bytes are those of struct FilmPixel in shaders/lib/film.glsl.
+// What accumulates over passes; the bytes are those of Film::read.
 struct FilmState {
     std::vector<std::byte> pixels;
     uint64_t passes = 0;
@@ -61,8 +62,7 @@ class Renderer {
     double warm_up_seconds() const { return warm_up_seconds_; }  // that the driver took to finish compiling
     Schedule schedule() const { return schedule_; }
 
-    // Mean radiance as R, G, B, and its standard error as error.R, error.G, error.B.
-    Image develop() const;
+    Image develop() const { return film_.develop(); }
     // Adds albedo.RGB, normal.XYZ and depth.Z of what the pixels see, by `count` primary rays a pixel.
     void add_aovs(Image& image, uint32_t count);
 
@@ -78,7 +78,8 @@ class Renderer {
     Scene& scene_;
     RenderSettings settings_;
     Schedule schedule_;
-    Buffer film_, film_address_, counter_sums_;
+    Film film_;
+    Buffer counter_sums_;
     std::unique_ptr<Pipeline> pipeline_;
     CommandList commands_;
     KernelTimings timings_;
@@ -86,9 +87,5 @@ class Renderer {
     uint64_t passes_ = 0;
     double seconds_ = 0, last_pass_seconds_ = 0, warm_up_seconds_ = 0;
 };
-
-// Root of the estimated relMSE: sqrt(mean(error² / (I² + 0.01 mean(I)²))) over pixels and channels of an
-// image with an error layer. Infinite before the second pass.
-double estimated_relative_error(const Image& image);
 
 }  // namespace etendue
