@@ -21,7 +21,8 @@ const char* overview =
 // Arguments as text; CLI11's own conversions take NaN, hexadecimal and trailing characters for numbers.
 struct RenderArguments {
     std::optional<std::string> passes, seconds, error, size;
-    std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto", schedule = "auto";
+    std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto", schedule = "auto",
+                vertex_memory = "256";
 };
 
 uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most) {
@@ -57,6 +58,14 @@ Choice parse_choice(const std::string& text, const char* option,
         allowed += allowed.empty() ? name : std::string(", ") + name;
     }
     fail_input("{} {}: not available; allowed: {}", option, text, allowed);
+}
+
+Algorithm parse_algorithm(const std::string& text, const char* option) {
+    return parse_choice<Algorithm>(text, option,
+                                   {{"auto", Algorithm::automatic},
+                                    {"backward", Algorithm::backward},
+                                    {"forward", Algorithm::forward},
+                                    {"bidirectional", Algorithm::bidirectional}});
 }
 
 std::string quoted_command(int argc, const char* const* argv) {
@@ -97,7 +106,11 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
                      "Latitude-longitude image for the scene's surroundings")
         ->option_text("FILE.hdr|exr");
     render->add_option("--algorithm", arguments.algorithm, "How light is traced (default: auto)")
-        ->option_text("auto|backward");
+        ->option_text("auto|backward|forward|bidirectional");
+    render
+        ->add_option("--vertex-memory", arguments.vertex_memory,
+                     "Memory for vertices of forward paths; a pass that needs more is split (default: 256)")
+        ->option_text("MIB");
     render->add_option("--color", arguments.color, "What a ray carries (default: auto)")
         ->option_text("auto|rgb");
     render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
@@ -136,9 +149,8 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
         options.passes = 64;
     if (arguments.size) options.size = parse_size(*arguments.size);
     options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
-    options.algorithm =
-        parse_choice<Algorithm>(arguments.algorithm, "--algorithm",
-                                {{"auto", Algorithm::automatic}, {"backward", Algorithm::backward}});
+    options.algorithm = parse_algorithm(arguments.algorithm, "--algorithm");
+    options.vertex_bytes = parse_count(arguments.vertex_memory, "--vertex-memory", 1, 1 << 20) << 20;
     options.color = parse_choice<ColorMode>(arguments.color, "--color",
                                             {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}});
     options.polarization = parse_choice<PolarizationMode>(

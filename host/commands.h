@@ -6,19 +6,12 @@
 #include <optional>
 #include <string>
 
+#include "host/render/modes.h"
+
 namespace etendue {
 
-enum class Algorithm { automatic, backward };
 enum class ColorMode { automatic, rgb };
 enum class PolarizationMode { automatic, off };
-
-// How a pass is divided into kernels; the image does not depend on it.
-enum class Schedule {
-    automatic,  // by the scene
-    fused,      // whole paths in one kernel
-    wavefront,  // a kernel a stage, paths in memory between them
-    by_class,   // the same, with a queue and a scattering kernel for each class of surfaces
-};
 
 struct ImageSize {
     uint32_t width = 0, height = 0;
@@ -36,6 +29,7 @@ struct RenderOptions {
     ColorMode color = ColorMode::automatic;
     PolarizationMode polarization = PolarizationMode::automatic;
     Schedule schedule = Schedule::automatic;
+    uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths
     uint64_t seed = 0;
     std::string device;  // name, part of one, or index; empty = the best there is
     std::filesystem::path checkpoint, resume, stats;  // empty = none

@@ -176,7 +176,9 @@ int render_command(const RenderOptions& given) {
     RenderSettings settings;
     settings.width = options.size->width, settings.height = options.size->height;
     settings.receiver = receiver.ref;
+    settings.algorithm = options.algorithm;
     settings.schedule = options.schedule;
+    settings.vertex_bytes = options.vertex_bytes;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
     Renderer renderer(*device, scene, settings);
     nlohmann::json identity;

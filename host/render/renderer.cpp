@@ -18,19 +18,6 @@ struct CounterSums {
 
 }  // namespace
 
-const char* schedule_name(Schedule schedule) {
-    switch (schedule) {
-        case Schedule::fused:
-            return "fused";
-        case Schedule::wavefront:
-            return "wavefront";
-        case Schedule::by_class:
-            return "by-class";
-        default:
-            return "automatic";
-    }
-}
-
 nlohmann::json to_json(const RenderCounters& c) {
     return {{"rays", c.rays},
             {"shadow_rays", c.shadow_rays},
@@ -68,6 +55,9 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
             settings.binding_bytes ? settings.binding_bytes : device.description.max_buffer_range),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
       commands_(device) {
+    if (settings.algorithm == Algorithm::forward || settings.algorithm == Algorithm::bidirectional)
+        fail_input("--algorithm {}: not available yet; allowed: auto, backward",
+                   algorithm_name(settings.algorithm));
     counter_sums_.fill(0);
     scene.features.film_by_address = film_.by_address();
     BufferTable film = film_.buffers();

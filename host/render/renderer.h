@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "host/commands.h"
 #include "host/gpu/kernel.h"
 #include "host/image/image.h"
 #include "host/render/film.h"
+#include "host/render/modes.h"
 #include "host/scene/scene.h"
 
 namespace etendue {
@@ -21,7 +21,9 @@ struct RenderSettings {
     uint32_t width = 512, height = 512;
     uint32_t receiver = no_record;  // RecordRef
     uint32_t seed = 0;
+    Algorithm algorithm = Algorithm::automatic;
     Schedule schedule = Schedule::automatic;
+    uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
     uint64_t binding_bytes = 0;  // a larger film is written through its address; 0 = what the device can bind
 };
 
@@ -40,12 +42,11 @@ struct FilmState {
     RenderCounters counters;
 };
 
-const char* schedule_name(Schedule schedule);
-
 Schedule choose_schedule(const Scene& scene);
 
 class Renderer {
   public:
+    // Fails with one line where the scene cannot be rendered by that algorithm.
     Renderer(Device& device, Scene& scene, const RenderSettings& settings);
     ~Renderer();
     Renderer(const Renderer&) = delete;

@@ -68,6 +68,16 @@ TEST_CASE("every option of render is understood") {
     CHECK(o.command_line.starts_with("etendue render a.gltf -o 'b c.exr' --error"));
 }
 
+TEST_CASE("forward paths have an algorithm and a memory of their own") {
+    auto usual = std::get<RenderOptions>(parse({"render", "a.gltf"}));
+    CHECK(usual.algorithm == Algorithm::automatic);
+    CHECK(usual.vertex_bytes == uint64_t(256) << 20);
+    auto o = std::get<RenderOptions>(
+        parse({"render", "a.gltf", "--algorithm", "bidirectional", "--vertex-memory", "4096"}));
+    CHECK(o.algorithm == Algorithm::bidirectional);
+    CHECK(o.vertex_bytes == uint64_t(4) << 30);
+}
+
 TEST_CASE("passes, time and error exclude each other") {
     CHECK(complaint({"render", "a.gltf", "--passes", "1", "--time", "1"}) ==
           "--passes excludes --time (see etendue render --help)");
@@ -79,6 +89,8 @@ TEST_CASE("numbers that are none, out of range or not finite are refused") {
         CHECK(complaint({"render", "a.gltf", "--passes", passes}) != "no error");
     for (const char* seconds : {"0", "-1", "nan", "inf", "1s"})
         CHECK(complaint({"render", "a.gltf", "--time", seconds}) != "no error");
+    for (const char* mebibytes : {"0", "-1", "1.5", "64M", "99999999"})
+        CHECK(complaint({"render", "a.gltf", "--vertex-memory", mebibytes}) != "no error");
     for (const char* size : {"640", "0x480", "640x", "x480", "640x480x3", "-4x4", "70000x4"})
         CHECK(complaint({"render", "a.gltf", "--size", size}) != "no error");
     for (const char* limit : {"0", "nan", "abc"})
@@ -91,8 +103,8 @@ TEST_CASE("wrong usage is one line that says what is allowed") {
     CHECK(complaint({"paint"}).starts_with("no command 'paint'; one of: render,"));
     CHECK(complaint({"render"}) == "SCENE is required (see etendue render --help)");
     CHECK(complaint({"render", ""}) == "SCENE is empty (see etendue render --help)");
-    CHECK(complaint({"render", "a.gltf", "--algorithm", "forward"}) ==
-          "--algorithm forward: not available; allowed: auto, backward");
+    CHECK(complaint({"render", "a.gltf", "--algorithm", "sideways"}) ==
+          "--algorithm sideways: not available; allowed: auto, backward, forward, bidirectional");
     CHECK(complaint({"render", "a.gltf", "-o", "a.jpg"}).ends_with("the name must end in .exr"));
     CHECK(complaint({"render", "a.gltf", "--passes"}) ==
           "--passes: value is missing (see etendue render --help)");
