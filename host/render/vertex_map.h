@@ -1,0 +1,49 @@
+// Light vertices of a pass on the device, and the grid that finds those near a point
+// (shaders/lib/vertex_grid.glsl).
+#pragma once
+#include <functional>
+#include <string>
+
+#include "host/gpu/kernel.h"
+
+namespace etendue {
+
+class VertexMap {
+  public:
+    // Compiles a kernel: its file under shaders/, its buffers, its macros.
+    using KernelMaker = std::function<Kernel(const std::string& file, const BufferTable& buffers,
+                                             const std::string& defines)>;
+
+    // Room for `capacity` light vertices, 1 to 2^28 - 2, and a bucket for each, up to 2^22. Vertices of more
+    // than `binding_bytes` are read by address; 0 = what the device can bind.
+    VertexMap(Device& device, uint32_t capacity, const KernelMaker& make, uint64_t binding_bytes = 0);
+
+    // What kernels need that include lib/light_vertices.glsl or lib/vertex_grid.glsl.
+    BufferTable buffers() const;
+    std::string defines() const;
+
+    // Before the first vertex of a pass.
+    void clear(CommandList& commands) const;
+    // After the last: makes the grid ready for queries. `expected` vertices, by which the dispatches are
+    // sized: the result does not depend on it.
+    void build(CommandList& commands, uint32_t expected) const;
+
+    struct Counts {
+        uint32_t wanted = 0, stored = 0;  // wanted > stored: the map was full
+    };
+    Counts counts() const;  // of the submissions that have run
+
+    uint32_t capacity() const { return capacity_; }
+    uint32_t buckets() const { return buckets_; }
+    uint64_t bytes() const;  // of device memory
+
+  private:
+    uint32_t capacity_, buckets_;
+    bool by_address_;
+    bool cpu_;
+    Buffer vertices_, address_, counts_, places_, bucket_starts_, bucket_sums_, items_, large_buckets_,
+        entries_;
+    Kernel scan_buckets_, sort_vertices_, order_vertices_, order_large_buckets_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,50 @@
+// The vertices of light paths, kept for the camera paths of the same pass. A VertexMap of the host owns the buffers.
+#include "lib/octahedral.glsl"
+
+struct LightVertex {  // 64 bytes
+    vec3 position;    // m
+    float vcm;        // dVCM of Georgiev 2012, "Implementing Vertex Connection and Merging"
+    vec3 throughput;  // relative flux
+    float vc;         // dVC there
+    vec2 direction;   // towards where the light came from; encode_octahedral
+    uint normal;      // geometric; encode_octahedral_16
+    uint instance;    // with uv and primitive: the hit, to locate it again
+    vec2 uv;
+    uint primitive;
+    uint previous;    // light_vertex_link
+};
+
+const uint NO_LIGHT_VERTEX = 0x0FFFFFFFu;
+const uint LIGHT_VERTEX_MERGES = 0x10000000u;  // it is in the grid of lib/vertex_grid.glsl
+const uint LIGHT_VERTEX_FLAGS = 0xF0000000u;   // the others are free for the algorithm
+
+// `vertex` before this one on its path, or NO_LIGHT_VERTEX, and flags.
+uint light_vertex_link(uint vertex, uint flags) { return (vertex & ~LIGHT_VERTEX_FLAGS) | (flags & LIGHT_VERTEX_FLAGS); }
+
+// light_vertex_at(i): through their address where they are larger than a binding (lib/large_arrays.glsl).
+#if LIGHT_VERTICES_BY_ADDRESS
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LightVerticesAt { LightVertex entries[]; };
+layout(scalar, set = 0) readonly buffer LightVerticesAddress { uvec2 light_vertices_address; };
+#define light_vertex_at(i) LightVerticesAt(light_vertices_address).entries[i]
+#else
+layout(scalar, set = 0) buffer LightVertices { LightVertex light_vertices[]; };
+#define light_vertex_at(i) light_vertices[i]
+#endif
+
+layout(scalar, set = 0) buffer LightVertexCounts {
+    uint light_vertex_capacity;  // below NO_LIGHT_VERTEX
+    uint bucket_mask;            // buckets of the grid - 1; their number is a power of two, at least 16
+    uint wanted_light_vertices;  // more than the capacity: the rest was not stored
+    uint large_bucket_count;     // of lib/vertex_grid.glsl
+};
+
+uint stored_light_vertices() { return min(wanted_light_vertices, light_vertex_capacity); }
+
+// Stores a vertex at the next free place, in no certain order, and returns the place; NO_LIGHT_VERTEX where all are taken.
+// An atomic for each lane: it may be called by any lanes, wherever they are.
+uint append_light_vertex(LightVertex vertex) {
+    uint place = atomicAdd(wanted_light_vertices, 1u);
+    if (place >= light_vertex_capacity) return NO_LIGHT_VERTEX;
+    light_vertex_at(place) = vertex;
+    return place;
+}

@@ -1,0 +1,142 @@
+#include "tests/support/vertex_map_probe.h"
+
+#include <algorithm>
+
+#include "host/error.h"
+
+namespace etendue {
+namespace {
+
+ShaderSources sources() {
+    ShaderSources result;
+    result.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    return result;
+}
+
+const char* const points_text = R"(
+    layout(local_size_x = 64) in;
+    layout(push_constant) uniform Push { uint count, room; };
+    #include "lib/vertex_grid.glsl"
+    struct Point { vec3 position; float radius; uint key, flags; };
+    layout(scalar, set = 0) readonly buffer Points { Point points[]; };
+)";
+
+// Lanes take turns of different lengths, so that they append in divergent flow. instance holds the key.
+const char* const store_text = R"(
+    void main() {
+        uint lanes = gl_NumWorkGroups.x * 64u, lane = gl_GlobalInvocationID.x;
+        for (uint first = lane * 4u; first < count; first += lanes * 4u) {
+            uint turns = min(4u, count - first);
+            for (uint k = 0u; k < turns; ++k) {
+                Point p = points[first + k];
+                LightVertex v = LightVertex(p.position, p.radius, vec3(1, 2, 3), 4.0, vec2(0.5, 0.25), 5u, p.key,
+                                            vec2(6, 7), 8u, light_vertex_link(first + k, p.flags));
+                uint vertex = append_light_vertex(v);
+                if (vertex != NO_LIGHT_VERTEX && (p.flags & LIGHT_VERTEX_MERGES) != 0u)
+                    enter_grid(vertex, p.position, p.radius, p.key);
+            }
+        }
+    }
+)";
+
+const char* const query_text = R"(
+    layout(scalar, set = 0) writeonly buffer Found { uint found[]; };  // a row of 1 + room: the count, the keys
+    void main() {
+        uint lanes = gl_NumWorkGroups.x * 64u;
+        for (uint i = gl_GlobalInvocationID.x; i < count; i += lanes) {
+            GridQuery q;
+            uint vertex, number = 0u, row = i * (1u + room);
+            vec3 position;
+            begin_query(q, points[i].position, points[i].radius);
+            while (next_candidate(q, vertex, position)) {
+                if (number < room) {
+                    bool same = position == light_vertex_at(vertex).position;
+                    found[row + 1u + number] = same ? light_vertex_at(vertex).instance : 0xFFFFFFFFu;
+                }
+                number++;
+                found[row] = number;
+            }
+        }
+    }
+)";
+
+}  // namespace
+
+VertexMapProbe::VertexMapProbe(Device& device, uint32_t capacity, uint64_t binding_bytes)
+    : map(
+          device, capacity,
+          [&](const std::string& file, const BufferTable& buffers, const std::string& defines) {
+              CompileOptions options;
+              options.defines = defines;
+              return Kernel(device, compile_shader(sources(), file, options), buffers);
+          },
+          binding_bytes),
+      device_(device) {}
+
+Kernel VertexMapProbe::kernel(const std::string& name, const std::string& text, BufferTable buffers) {
+    ShaderSources all = sources();
+    all.generated[name] = points_text + text;
+    CompileOptions options;
+    options.defines = map.defines();
+    buffers.merge(map.buffers());
+    return Kernel(device_, compile_shader(all, name, options), buffers);
+}
+
+void VertexMapProbe::store(const std::vector<GridPoint>& points, uint32_t groups, uint32_t expected,
+                           KernelTimings* timings) {
+    const Buffer in = create_buffer(device_, points, "points");
+    const Kernel store = kernel("store_points", store_text, {{"Points", &in}});
+    CommandList commands(device_);
+    for (int run = timings ? 0 : 1; run < 2; ++run) {  // the first compiles
+        map.clear(commands);
+        commands.dispatch(store, groups, {{"count", uint32_t(points.size())}, {"room", 0u}});
+        map.build(commands, expected);
+        commands.run(run == 1 ? timings : nullptr);
+    }
+}
+
+std::vector<std::vector<uint32_t>> VertexMapProbe::neighbours(const std::vector<GridPoint>& points,
+                                                              uint32_t room) {
+    const auto count = uint32_t(points.size());
+    const Buffer in = create_buffer(device_, points, "points");
+    Buffer found(device_, uint64_t(count) * (1 + room) * 4, "found");
+    found.fill(0);
+    const Kernel query = kernel("query_points", query_text, {{"Points", &in}, {"Found", &found}});
+    CommandList commands(device_);
+    commands.dispatch(query, std::min((count + 63) / 64, max_groups), {{"count", count}, {"room", room}});
+    commands.run();
+    const auto words = found.read_array<uint32_t>(uint64_t(count) * (1 + room));
+    std::vector<std::vector<uint32_t>> result;
+    for (size_t row = 0; row < words.size(); row += 1 + room) {
+        if (words[row] > room) fail_input("{} neighbours, room for {}", words[row], room);
+        result.emplace_back(words.begin() + row + 1, words.begin() + row + 1 + words[row]);
+    }
+    return result;
+}
+
+double VertexMapProbe::count_neighbours(const std::vector<GridPoint>& points, KernelTimings* timings) {
+    const auto count = uint32_t(points.size());
+    const Buffer in = create_buffer(device_, points, "points");
+    Buffer found(device_, uint64_t(count) * 4, "found");
+    const Kernel query = kernel("query_points", query_text, {{"Points", &in}, {"Found", &found}});
+    CommandList commands(device_);
+    for (int run = 0; run < 2; ++run) {
+        commands.fill(found, 0);
+        commands.dispatch(query, std::max(2u, std::min((count + 511) / 512, max_groups)),
+                          {{"count", count}, {"room", 0u}});
+        commands.run(run == 1 ? timings : nullptr);
+    }
+    double sum = 0;
+    for (uint32_t n : found.read_array<uint32_t>(count)) sum += n;
+    return sum / count;
+}
+
+std::vector<LightVertex> VertexMapProbe::vertices() const {
+    return map.buffers().at("LightVertices")->read_array<LightVertex>(map.capacity());
+}
+
+std::vector<glm::vec4> VertexMapProbe::entries() const {
+    return map.buffers().at("GridEntries")->read_array<glm::vec4>(map.counts().stored);
+}
+
+}  // namespace etendue
