@@ -10,6 +10,7 @@ Features Features::everything() {
     f.media = f.interfaces = f.straight = f.light_tree = true;
     f.light_count = 16;
     f.infinite_light_count = 2;
+    f.scene_radius = 1;
     return f;
 }
 
@@ -40,6 +41,7 @@ std::string Features::defines() const {
     define("BVH_STACK_SIZE", bvh_stack_size);
     define("LIGHT_COUNT", light_count);
     define("INFINITE_LIGHT_COUNT", infinite_light_count);
+    text += fmt::format("#define SCENE_RADIUS {:.9e}\n", scene_radius);  // digits that tell floats apart
     return text;
 }
 

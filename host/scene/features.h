@@ -29,6 +29,7 @@ struct Features {
     uint32_t bvh_stack_size = 64;  // references that a traversal can hold back
     uint32_t light_count = 0;      // finite and infinite lights
     uint32_t infinite_light_count = 0;
+    float scene_radius = 0;  // m, of a sphere around all geometry
 
     static Features everything();  // for lint and reflection
     std::string defines() const;

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "host/error.h"
+#include "host/scene/emission_choice.h"
 #include "host/scene/emission_texture.h"
 #include "host/scene/scene_compiler.h"
 
@@ -56,6 +57,7 @@ void SceneCompiler::add_lights() {
     first_area_light_ = uint32_t(infinite.size() + finite.size());
     out_.lights = lights_.size();
     out_.features.light_count = uint32_t(lights_.size());
+    out_.features.scene_radius = out_.radius;
 }
 
 // Triangles that an emissive texture leaves dark are no lights.
@@ -89,6 +91,7 @@ void SceneCompiler::measure_lights() {
     if (lights_.empty()) {
         upload("LightNodes", std::vector<uint32_t>());
         upload("LightTrails", std::vector<uint32_t>());
+        upload("LightEmission", std::vector<EmissionChoice>());
         return;
     }
     std::vector<LightBounds> bounds = run_measurement();
@@ -99,10 +102,12 @@ void SceneCompiler::measure_lights() {
     std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return is_at_infinity(bounds[i]); });
     std::vector<uint32_t> sorted_lights;
     std::vector<LightBounds> sorted_bounds;
+    std::vector<double> powers;
     for (uint32_t position = 0; position < order.size(); ++position) {
         const uint32_t i = order[position];
         sorted_lights.push_back(lights_[i]);
         sorted_bounds.push_back(bounds[i]);
+        powers.push_back(bounds[i].power);
         out_.power += bounds[i].power;
         if (i >= first_area_light_)
             world_.primitives[area_primitives_[i - first_area_light_]].light = position;
@@ -113,6 +118,7 @@ void SceneCompiler::measure_lights() {
     upload("Lights", sorted_lights);
     upload("LightNodes", tree.nodes);
     upload("LightTrails", tree.trails);
+    upload("LightEmission", build_emission_choices(powers));
     out_.buffers["Primitives"].write(world_.primitives.data(),
                                      world_.primitives.size() * sizeof(PrimitiveRecord));
 }
@@ -120,8 +126,7 @@ void SceneCompiler::measure_lights() {
 std::vector<LightBounds> SceneCompiler::run_measurement() {
     const Buffer out(device_, lights_.size() * sizeof(LightBounds), "LightBoundsTable");
     const uint32_t count = uint32_t(lights_.size());
-    run_once("kernels/measure_lights.comp", count, {{"LightBoundsTable", &out}},
-             {{"light_count", count}, {"scene_radius", out_.radius}});
+    run_once("kernels/measure_lights.comp", count, {{"LightBoundsTable", &out}}, {{"light_count", count}});
     return out.read_array<LightBounds>(count);
 }
 

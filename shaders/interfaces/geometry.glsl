@@ -4,7 +4,8 @@
 //   bool           NAME_intersect(R r, vec3 origin, vec3 direction, float t_max, out GeometryHit hit)
 //                                                            nearest hit with 0 < t < t_max; direction is not unit
 //   LocalPoint     NAME_locate(R r, vec3 origin, vec3 direction, GeometryHit hit)
-//   GeometrySample NAME_sample(R r, vec2 u)                  a point, uniform by area
+//   GeometrySample NAME_sample(R r, vec2 u)                  a point, uniform by area; per axis within SAMPLE_ROUNDINGS
+//                                                            roundings of the box's reach from the exact surface
 //   GeometrySample NAME_sample_towards(R r, vec3 reference, vec2 u)   a point as seen from `reference`
 //   float          NAME_pdf_towards(R r, vec3 reference, vec3 position, vec3 normal)   of sample_towards, 1/m²
 //   float          NAME_area(R r)                            m²
@@ -28,6 +29,8 @@ struct LocalPoint {
     vec3 tangent;   // along increasing u; not unit
     vec2 uv;        // texture coordinates
 };
+
+const float SAMPLE_ROUNDINGS = 8.0;
 
 struct GeometrySample {
     vec3 position;

@@ -1,15 +1,24 @@
 // LightSource: where light comes from. A class NAME defines, for its record R:
 //
 //   LightSample NAME_sample_towards(R r, vec3 point, vec2 u)           a direction from `point` towards the light
-//   float       NAME_pdf_towards(R r, vec3 point, vec3 direction, LightHit hit)  of sample_towards, 1/sr; 0 for delta lights
+//   float       NAME_pdf_towards(R r, vec3 point, vec3 direction, LightHit hit)  of sample_towards, as LightSample.pdf
 //   Spectrum    NAME_radiance(R r, vec3 direction, LightHit hit)       radiance that a ray along `direction` meets:
-//                                     on the emitting surface (hit), or where it leaves the scene (lights at infinity)
+//                                     on the emitting surface (hit), or where it leaves the scene (lights at infinity);
+//                                     0 for delta lights, which rays cannot meet
+//   EmittedRay  NAME_emit(R r, SceneBounds bounds, vec2 u_position, vec2 u_direction)   a ray that leaves the light
+//   float       NAME_pdf_emit(R r, SceneBounds bounds, vec3 direction, LightHit hit)    density of emit sending the ray
+//                                     that a ray along `direction` meets, as EmittedRay.pdf; 0 where it never would
 //   float       NAME_power(R r, SceneBounds bounds)                    luminous flux sent into the scene, lm (radiant flux
 //                                     for an image in radiometric units); guides light selection and the power balance
 //   void        NAME_bounds(R r, out vec3 lo, out vec3 hi)             world box; lo > hi for a light at infinity
 //   LightCone   NAME_cone(R r)                                     directions into which it sends light
 //
-// All in world space.
+// All in world space. Where a function is asked about a direction, it points towards the light. Delta lights are asked only
+// about their own light: hit.position is theirs, or the direction is.
+//
+// Densities of rays are per étendue, projected area times solid angle, so that they are the same for a ray wherever on it
+// they are taken, and nothing tells lights at infinity from others (Veach 1997, section 4.1). Delta lights have the
+// density over what is left to choose: the solid angle of a point, the area of parallel rays.
 #include "lib/accurate_math.glsl"
 #include "lib/constants.glsl"
 #include "lib/spectrum.glsl"
@@ -20,12 +29,29 @@
 struct LightSample {
     vec3 direction;     // unit, from the point to the light
     float distance;     // m; INFINITY for lights at infinity
-    Spectrum radiance;  // arriving along the direction; for delta lights the irradiance on a plane that faces the light
-    float pdf;          // 1/sr; 1 for delta lights; 0 = no light this way
+    Spectrum radiance;  // arriving along the direction; delta positions: luminous intensity towards the point; delta
+                        // directions: irradiance on a plane that faces the light. Over pdf it is an irradiance in any case
+    float pdf;          // 1/sr; delta positions: distance², m²; delta directions: 1; 0 = no light this way
+    float emission_pdf; // density of emit sending the light that arrives, as EmittedRay.pdf
     bool is_delta;      // rays can never hit the light
 };
 
-LightSample no_light_sample() { return LightSample(vec3(0, 0, 1), 0.0, Spectrum(0), 0.0, true); }
+LightSample no_light_sample() { return LightSample(vec3(0, 0, 1), 0.0, Spectrum(0), 0.0, 0.0, true); }
+
+struct EmittedRay {
+    vec3 origin;        // m; on the surface (not yet offset from it), the point, or outside the scene for lights at infinity
+    vec3 error;         // bound of the distance from the exact surface, per axis, m; 0 where there is no surface
+    vec3 normal;        // unit, of the surface, on the side that the ray leaves; the direction where there is no surface
+    vec3 direction;     // unit, the way the light travels
+    Spectrum radiance;  // along the ray; delta positions: luminous intensity; delta directions: irradiance as above
+    float pdf;          // density, 1/(m² sr); delta positions: 1/sr; delta directions: 1/m²; 0 = no ray. radiance / pdf is
+                        // the flux that the ray carries
+    bool is_delta;      // rays can never hit the light
+};
+
+EmittedRay no_emitted_ray() {
+    return EmittedRay(vec3(0), vec3(0), vec3(0, 0, 1), vec3(0, 0, 1), Spectrum(0), 0.0, true);
+}
 
 // The point of a surface light that a ray has hit; unused by lights at infinity.
 struct LightHit {
@@ -34,7 +60,20 @@ struct LightHit {
     vec2 uv0, uv1;
 };
 
+// A sphere around all geometry, m. The host defines SCENE_RADIUS; world coordinates are relative to its centre.
 struct SceneBounds { vec3 center; float radius; };
+
+SceneBounds scene_bounds() { return SceneBounds(vec3(0), SCENE_RADIUS); }
+
+// Rays of one direction into the scene start evenly on a disk across the direction that is as large as the scene and lies
+// outside it.
+float outer_disk_pdf(SceneBounds bounds) {  // 1/m²; 0 without geometry
+    return bounds.radius > 0.0 ? INV_PI / square(bounds.radius) : 0.0;
+}
+vec3 outer_disk_point(SceneBounds bounds, vec3 direction, vec2 u) {
+    vec3 across = frame_around(direction) * vec3(warp_disk(u), 0.0);
+    return bounds.center + bounds.radius * (across - 1.01 * direction);
+}
 
 // Normals lie within an angle n of the axis; light leaves within an angle e of some normal, strongest along it. Both as
 // cosines; may be too wide, never too narrow.
@@ -72,6 +111,26 @@ Spectrum light_radiance(uint ref, vec3 direction, LightHit hit) {
     Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_radiance(name##_record(record_index(ref)), direction, hit); break;
+        LIGHT_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+EmittedRay light_emit(uint ref, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
+    EmittedRay result = no_emitted_ray();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_emit(name##_record(record_index(ref)), bounds, u_position, u_direction); break;
+        LIGHT_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+float light_pdf_emit(uint ref, SceneBounds bounds, vec3 direction, LightHit hit) {
+    float result = 0.0;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_pdf_emit(name##_record(record_index(ref)), bounds, direction, hit); break;
         LIGHT_CLASSES(CASE)
 #undef CASE
     }

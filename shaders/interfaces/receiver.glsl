@@ -1,24 +1,74 @@
 // Receiver: where light is measured. A class NAME defines, for its record R:
 //
-//   CameraRay NAME_emit(R r, vec2 film, float film_aspect)   the backward ray through a point of the film
+//   CameraRay      NAME_emit(R r, vec2 film, float film_aspect)   the backward ray through a point of the film
+//   ReceiverSample NAME_connect(R r, vec3 point, vec2 u, float film_aspect)   a way from a point to the receiver. Its density
+//                               / pdf is the importance: a point that sends the intensity I (W/sr) that way adds
+//                               I * density / pdf to the mean over the film
+//   float          NAME_footprint(R r, vec3 point, float film_aspect)   square root of the area that the whole film covers at
+//                               the point's distance, m; > 0, continuous, also for points out of view
 //
-// `film` runs over [0,1]², x to the right, y down; film_aspect = width / height of the image. World space.
+// `film` runs over [0,1]², x to the right, y down; film_aspect = width / height of the image. World space; node transforms
+// may scale, shear and mirror.
 #include "lib/constants.glsl"
 #include "lib/records.glsl"
 #include "lib/warps.glsl"
 
 struct CameraRay {
     vec3 origin;
-    vec3 direction;   // unit
-    float weight;     // of the radiance it collects; 0 = this point of the film sees nothing
+    vec3 direction;     // unit
+    float weight;       // of the radiance it collects; 0 = this point of the film sees nothing
+    float density;      // of emit sending this ray for points spread evenly over the film, 1/sr from a pinhole, 1/m² of
+                        // parallel rays, across them
+    float connect_pdf;  // of `connect` choosing this ray from a point at distance d on it: connect_pdf d², or connect_pdf
+    bool is_parallel;   // where this is set
 };
+
+struct ReceiverSample {
+    vec3 direction;   // unit, from the point to the receiver
+    float distance;   // m
+    vec2 film;        // [0,1]²
+    float density;    // as CameraRay.density, of the ray that arrives
+    float pdf;        // distance², m²; parallel rays: 1; 0 = the receiver does not see the point
+};
+
+ReceiverSample no_receiver_sample() { return ReceiverSample(vec3(0, 0, 1), 0.0, vec2(0), 0.0, 0.0); }
+
+// The signed volume that the columns span.
+float frame_volume(mat3 m) { return dot(cross(m[0], m[1]), m[2]); }
+
+// `v` in the frame whose axes are the columns of m, times |frame_volume(m)|.
+vec3 scaled_local(mat3 m, vec3 v) {
+    vec3 x = cross(m[1], m[2]);
+    vec3 local = vec3(dot(x, v), dot(cross(m[2], m[0]), v), dot(cross(m[0], m[1]), v));
+    return dot(x, m[0]) < 0.0 ? -local : local;
+}
 
 #include "generated/receiver_classes.glsl"
 
 CameraRay receiver_emit(uint ref, vec2 film, float film_aspect) {
-    CameraRay result = CameraRay(vec3(0), vec3(0, 0, 1), 0.0);
+    CameraRay result = CameraRay(vec3(0), vec3(0, 0, 1), 0.0, 0.0, 1.0, false);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_emit(name##_record(record_index(ref)), film, film_aspect); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+ReceiverSample receiver_connect(uint ref, vec3 point, vec2 u, float film_aspect) {
+    ReceiverSample result = no_receiver_sample();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_connect(name##_record(record_index(ref)), point, u, film_aspect); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+float receiver_footprint(uint ref, vec3 point, float film_aspect) {
+    float result = 1.0;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_footprint(name##_record(record_index(ref)), point, film_aspect); break;
         RECEIVER_CLASSES(CASE)
 #undef CASE
     }

@@ -7,7 +7,6 @@ layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
     uint first, light_count;
-    float scene_x, scene_y, scene_z, scene_radius;  // m, a sphere around the scene
 };
 
 // Mirrors struct LightBounds of light_tree.h.
@@ -28,7 +27,7 @@ void main() {
     if (i >= light_count) return;
     LightBounds b;
     light_bounds(lights[i], b.lo, b.hi);
-    b.power = light_power(lights[i], SceneBounds(vec3(scene_x, scene_y, scene_z), scene_radius));
+    b.power = light_power(lights[i], scene_bounds());
     LightCone cone = light_cone(lights[i]);
     b.axis = cone.axis;
     b.cos_normals = cone.cos_normals;

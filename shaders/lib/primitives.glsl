@@ -158,6 +158,51 @@ vec3 offset_origin(vec3 position, vec3 error, vec3 normal, vec3 direction) {
 
 // Emissive primitives: triangles in world space, or shapes. All pdfs are per world area, 1/m².
 
+// Evenly by area, of a shape by that of its local frame. `error`: bound of the distance from the exact surface, per axis, m.
+GeometrySample primitive_sample(uint primitive, vec2 u, out vec3 error) {
+    Triangle r = primitive_at(primitive);
+    GeometrySample s = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
+    error = vec3(0);
+#if HAS_SHAPES
+    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+        uint ref = floatBitsToUint(r.v0.x);
+        Transform m = transform_at(floatBitsToUint(r.v0.y));
+        GeometrySample local = geometry_sample(ref, u);
+        vec3 lo, hi;
+        geometry_bounds(ref, lo, hi);
+        vec3 local_error = gamma(SAMPLE_ROUNDINGS) * max(abs(lo), abs(hi));
+        s.pdf = local.pdf / area_factor(m, local.normal);
+        s.position = m.world_from_local * vec4(local.position, 1.0);
+        s.normal = normalize(normal_to_world(m, local.normal));
+        error = map_error(m, local.position, local_error, s.position);
+    }
+#endif
+#if HAS_TRIANGLES
+    if (attributes_kind(r.attributes) == KIND_TRIANGLE) {
+        LocalPoint p = triangle_locate(r, vec3(0), vec3(0), GeometryHit(0.0, warp_triangle(u)));
+        s = GeometrySample(p.position, p.normal, 1.0 / triangle_area(r));
+        error = p.error;
+    }
+#endif
+    return s;
+}
+
+// Of primitive_sample, at a point with this normal.
+float primitive_pdf(uint primitive, vec3 normal) {
+    Triangle r = primitive_at(primitive);
+    float pdf = 0.0;
+#if HAS_SHAPES
+    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+        Transform m = transform_at(floatBitsToUint(r.v0.y));
+        pdf = 1.0 / (geometry_area(floatBitsToUint(r.v0.x)) * area_factor(m, normalize(normal_to_local(m, normal))));
+    }
+#endif
+#if HAS_TRIANGLES
+    if (attributes_kind(r.attributes) == KIND_TRIANGLE) pdf = 1.0 / triangle_area(r);
+#endif
+    return pdf;
+}
+
 GeometrySample primitive_sample_towards(uint primitive, vec3 reference, vec2 u) {
     Triangle r = primitive_at(primitive);
     GeometrySample s = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);

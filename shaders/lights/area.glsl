@@ -23,6 +23,14 @@ vec3 lifted_point(GeometrySample g, vec3 reference, float cosine) {
     return g.position + (cosine < 0.0 ? lift : -lift) * g.normal;
 }
 
+// Density of the rays that leave the surface at a point with this normal on the given side: directions are in proportion to
+// the cosine, which the projected area takes away again.
+float area_emission_pdf(AreaLight r, bool front, vec3 normal) {
+    bool both = material_emits_both_sides(r.material);
+    if (!front && !both) return 0.0;
+    return (both ? 0.5 : 1.0) * INV_PI * primitive_pdf(r.primitive, normal);
+}
+
 LightSample area_sample_towards(AreaLight r, vec3 point, vec2 u) {
     GeometrySample g = primitive_sample_towards(r.primitive, point, u);
     vec3 d = g.position - point;
@@ -36,7 +44,8 @@ LightSample area_sample_towards(AreaLight r, vec3 point, vec2 u) {
     vec2 uv0 = vec2(0), uv1 = vec2(0);
     if (materials[r.material].emission_texture.index != NO_RECORD) primitive_uv(r.primitive, g.position, uv0, uv1);
     Spectrum radiance = material_emission(r.material, cosine < 0.0, uv0, uv1);
-    return LightSample(direction, distance, radiance, area_solid_angle_pdf(g.pdf, distance_squared, cosine), false);
+    return LightSample(direction, distance, radiance, area_solid_angle_pdf(g.pdf, distance_squared, cosine),
+                       area_emission_pdf(r, cosine < 0.0, g.normal), false);
 }
 
 float area_pdf_towards(AreaLight r, vec3 point, vec3 direction, LightHit hit) {
@@ -47,6 +56,28 @@ float area_pdf_towards(AreaLight r, vec3 point, vec3 direction, LightHit hit) {
 
 Spectrum area_radiance(AreaLight r, vec3 direction, LightHit hit) {
     return material_emission(r.material, dot(hit.normal, direction) < 0.0, hit.uv0, hit.uv1);
+}
+
+// Evenly over the surface, and over its sides where both emit.
+EmittedRay area_emit(AreaLight r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
+    vec3 error;
+    GeometrySample g = primitive_sample(r.primitive, u_position, error);
+    bool both = material_emits_both_sides(r.material);
+    bool front = true;
+    if (both) {
+        front = u_direction.x < 0.5;
+        u_direction.x = 2.0 * u_direction.x - (front ? 0.0 : 1.0);
+    }
+    vec3 normal = front ? g.normal : -g.normal;
+    vec3 direction = normalize(frame_around(normal) * warp_cosine_hemisphere(u_direction));
+    vec2 uv0 = vec2(0), uv1 = vec2(0);
+    if (materials[r.material].emission_texture.index != NO_RECORD) primitive_uv(r.primitive, g.position, uv0, uv1);
+    Spectrum radiance = material_emission(r.material, front, uv0, uv1);
+    return EmittedRay(g.position, error, normal, direction, radiance, (both ? 0.5 : 1.0) * INV_PI * g.pdf, false);
+}
+
+float area_pdf_emit(AreaLight r, SceneBounds bounds, vec3 direction, LightHit hit) {
+    return area_emission_pdf(r, dot(hit.normal, direction) < 0.0, hit.normal);
 }
 
 // Luminance, averaged over the surface. With a texture over 4 x 4 of its points; a part that they miss may

@@ -134,7 +134,8 @@ LightSample image_sample_towards(ImageEnvironment r, vec3 point, vec2 u) {
     vec2 around = cos_sin_turns((float(column) + 0.5 + at.x) / float(map.width) - 0.5 - r.rotation * (0.5 * INV_PI)) *
                   sqrt(from_pole * (2.0 - from_pole));
     float pdf = luminance(radiance) / map.integral;
-    return LightSample(vec3(around.y, y, -around.x), INFINITY, radiance * r.scale, pdf, false);
+    return LightSample(vec3(around.y, y, -around.x), INFINITY, radiance * r.scale, pdf, pdf * outer_disk_pdf(scene_bounds()),
+                       false);
 }
 
 Spectrum image_radiance(ImageEnvironment r, vec3 direction, LightHit hit) {
@@ -143,6 +144,16 @@ Spectrum image_radiance(ImageEnvironment r, vec3 direction, LightHit hit) {
 
 float image_pdf_towards(ImageEnvironment r, vec3 point, vec3 direction, LightHit hit) {
     return r.file.integral > 0.0 ? luminance(environment_radiance(r, direction)) / r.file.integral : 0.0;
+}
+
+EmittedRay image_emit(ImageEnvironment r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
+    LightSample l = image_sample_towards(r, vec3(0), u_direction);
+    return EmittedRay(outer_disk_point(bounds, -l.direction, u_position), vec3(0), -l.direction, -l.direction, l.radiance,
+                      l.pdf * outer_disk_pdf(bounds), false);
+}
+
+float image_pdf_emit(ImageEnvironment r, SceneBounds bounds, vec3 direction, LightHit hit) {
+    return image_pdf_towards(r, vec3(0), direction, hit) * outer_disk_pdf(bounds);
 }
 
 float image_power(ImageEnvironment r, SceneBounds bounds) {

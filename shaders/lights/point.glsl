@@ -11,12 +11,25 @@ LightSample point_sample_towards(PointLight r, vec3 point, vec2 u) {
     vec3 d = r.placement.world_from_local[3] - point;
     float distance = length(d);
     if (!(distance > 0.0)) return no_light_sample();
-    Spectrum irradiance = spectrum_value(r.color) * (r.intensity / distance / distance);
-    return LightSample(d / distance, distance, irradiance, 1.0, true);
+    return LightSample(d / distance, distance, spectrum_value(r.color) * r.intensity, square(distance), 0.25 * INV_PI, true);
 }
 
-float point_pdf_towards(PointLight r, vec3 point, vec3 direction, LightHit hit) { return 0.0; }
+float point_pdf_towards(PointLight r, vec3 point, vec3 direction, LightHit hit) {
+    vec3 d = hit.position - point;
+    return dot(d, d);
+}
+
 Spectrum point_radiance(PointLight r, vec3 direction, LightHit hit) { return Spectrum(0); }
+
+EmittedRay point_emit(PointLight r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
+    float z = 1.0 - 2.0 * u_direction.x;
+    vec2 around = cos_sin_turns(u_direction.y) * sqrt(4.0 * u_direction.x * (1.0 - u_direction.x));
+    vec3 direction = vec3(around, z);
+    return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction, spectrum_value(r.color) * r.intensity,
+                      0.25 * INV_PI, true);
+}
+
+float point_pdf_emit(PointLight r, SceneBounds bounds, vec3 direction, LightHit hit) { return 0.25 * INV_PI; }
 
 float point_power(PointLight r, SceneBounds bounds) { return 4.0 * PI * r.intensity * luminance(spectrum_value(r.color)); }
 

@@ -13,18 +13,28 @@ struct SpotLight {
 
 vec3 spot_axis(SpotLight r) { return -normalize(r.placement.world_from_local[2]); }
 
+// 1 - cos of the angles between which it falls off; equal where there is no falloff.
+struct SpotFalloff { float inner, outer; };
+
+SpotFalloff spot_cone_edges(SpotLight r) {
+    float outer = versine(r.outer_cone_angle);
+    float inner = versine(r.inner_cone_angle);
+    return SpotFalloff(outer - inner > 1e-6 * outer ? inner : outer, outer);
+}
+
 // Part of the full intensity along a unit direction away from the light.
 float spot_falloff(SpotLight r, vec3 direction) {
     vec3 axis = spot_axis(r);
     float c = dot(axis, direction);
     vec3 off = cross(axis, direction);
     float v = c > 0.0 ? dot(off, off) / (1.0 + c) : 1.0 - c;
-    float outer = versine(r.outer_cone_angle);
-    float inner = min(versine(r.inner_cone_angle), outer);
-    float width = outer - inner;
-    float t = width > 1e-6 * outer ? clamp((outer - v) / width, 0.0, 1.0) : (v < outer ? 1.0 : 0.0);
+    SpotFalloff f = spot_cone_edges(r);
+    float t = f.outer > f.inner ? clamp((f.outer - v) / (f.outer - f.inner), 0.0, 1.0) : (v < f.outer ? 1.0 : 0.0);
     return t * t;
 }
+
+// The integral of the falloff over directions, sr: 2 pi (v_inner + (v_outer - v_inner) / 3), v = 1 - cos.
+float spot_solid_angle(SpotFalloff f) { return 2.0 * PI * (f.inner + (f.outer - f.inner) / 3.0); }
 
 LightSample spot_sample_towards(SpotLight r, vec3 point, vec2 u) {
     vec3 d = r.placement.world_from_local[3] - point;
@@ -33,18 +43,43 @@ LightSample spot_sample_towards(SpotLight r, vec3 point, vec2 u) {
     vec3 direction = d / distance;
     float falloff = spot_falloff(r, -direction);
     if (!(falloff > 0.0)) return no_light_sample();
-    Spectrum irradiance = spectrum_value(r.color) * (r.intensity * falloff / distance / distance);
-    return LightSample(direction, distance, irradiance, 1.0, true);
+    return LightSample(direction, distance, spectrum_value(r.color) * (r.intensity * falloff), square(distance),
+                       falloff / spot_solid_angle(spot_cone_edges(r)), true);
 }
 
-float spot_pdf_towards(SpotLight r, vec3 point, vec3 direction, LightHit hit) { return 0.0; }
+float spot_pdf_towards(SpotLight r, vec3 point, vec3 direction, LightHit hit) {
+    vec3 d = hit.position - point;
+    return dot(d, d);
+}
+
 Spectrum spot_radiance(SpotLight r, vec3 direction, LightHit hit) { return Spectrum(0); }
 
-// The integral of the falloff over directions: 2 pi (v_inner + (v_outer - v_inner) / 3), v = 1 - cos.
+// In proportion to the falloff: inverts its integral over v, first the even part within the inner cone, then what is left
+// of the cubic beyond it, 1 - t³ with t = (v_outer - v) / (v_outer - v_inner).
+EmittedRay spot_emit(SpotLight r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
+    SpotFalloff f = spot_cone_edges(r);
+    float tail = (f.outer - f.inner) / 3.0;
+    float v = u_direction.x * (f.inner + tail);
+    float t = 1.0;
+    if (v > f.inner) {
+        float cube = max(1.0 - (v - f.inner) / tail, EPSILON);
+        t = pow(cube, 1.0 / 3.0);
+        t = (2.0 * t + cube / square(t)) / 3.0;  // Newton: a driver's pow may be coarse
+        v = f.outer - t * (f.outer - f.inner);
+    }
+    vec2 around = cos_sin_turns(u_direction.y) * sqrt(v * (2.0 - v));
+    vec3 direction = normalize(frame_around(spot_axis(r)) * vec3(around, 1.0 - v));
+    float falloff = square(t);
+    return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction,
+                      spectrum_value(r.color) * (r.intensity * falloff), falloff / spot_solid_angle(f), true);
+}
+
+float spot_pdf_emit(SpotLight r, SceneBounds bounds, vec3 direction, LightHit hit) {
+    return spot_falloff(r, -direction) / spot_solid_angle(spot_cone_edges(r));
+}
+
 float spot_power(SpotLight r, SceneBounds bounds) {
-    float outer = versine(r.outer_cone_angle);
-    float inner = min(versine(r.inner_cone_angle), outer);
-    return 2.0 * PI * (inner + (outer - inner) / 3.0) * r.intensity * luminance(spectrum_value(r.color));
+    return spot_solid_angle(spot_cone_edges(r)) * r.intensity * luminance(spectrum_value(r.color));
 }
 
 void spot_bounds(SpotLight r, out vec3 lo, out vec3 hi) { lo = hi = r.placement.world_from_local[3]; }

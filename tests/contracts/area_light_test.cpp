@@ -74,7 +74,7 @@ const char* const sample_text = R"(
         if (i >= count) return;
         vec3 point = vec3(x, y, z);
         uvec3 h = hash_3d(hash_3d(uvec3(i, 3u, 1u)));
-        LightSample l = given != 0u ? LightSample(directions[i], 0.0, Spectrum(0), 1.0, false)
+        LightSample l = given != 0u ? LightSample(directions[i], 0.0, Spectrum(0), 1.0, 0.0, false)
                                     : light_sample_towards(lights[0], point, vec2(h.xy >> 8) / 16777216.0);
         Sample s = Sample(l.direction, l.distance, l.radiance, l.pdf, -1.0, -1.0);
         if (l.pdf > 0.0) {

@@ -1,7 +1,6 @@
 #include "tests/support/light_probe.h"
 
 #include "host/scene/environment_map.h"
-#include "host/scene/features.h"
 #include "host/scene/records.h"
 
 namespace etendue {
@@ -76,16 +75,15 @@ LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& para
     sources_ = test_sources();
     sources_.generated["generated/light_classes.glsl"] =
         class_header(interface_info(Interface::light), {info});
-    Features features;
-    features.light_count = 1;
-    defines_ = features.defines();
+    features_.light_count = 1;
+    features_.scene_radius = 1;
 }
 
 Kernel LightProbe::kernel(const std::string& name, const std::string& text, BufferTable buffers) {
     ShaderSources sources = sources_;
     if (!text.empty()) sources.generated[name] = text;
     CompileOptions options;
-    options.defines = defines_;
+    options.defines = features_.defines();
     buffers["LightRecords"] = &records_;
     buffers["EnvironmentTexels"] = &texels_;
     buffers["Lights"] = &lights_;
@@ -129,15 +127,11 @@ std::vector<ProbeValue> LightProbe::evaluate(glm::vec3 point, const std::vector<
 }
 
 LightBounds LightProbe::measure(float scene_radius) {
+    features_.scene_radius = scene_radius;
     Buffer out(test_device(), sizeof(LightBounds), "light bounds");
     const Kernel measure = kernel("kernels/measure_lights.comp", "", {{"LightBoundsTable", &out}});
     CommandList list(test_device());
-    list.dispatch(measure, 1,
-                  {{"light_count", 1u},
-                   {"scene_x", 0.0f},
-                   {"scene_y", 0.0f},
-                   {"scene_z", 0.0f},
-                   {"scene_radius", scene_radius}});
+    list.dispatch(measure, 1, {{"light_count", 1u}});
     list.run();
     return out.read_array<LightBounds>(1)[0];
 }

@@ -6,6 +6,7 @@
 
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
+#include "host/scene/features.h"
 #include "host/scene/light_tree.h"
 #include "tests/support/device_fixture.h"
 
@@ -40,7 +41,7 @@ class LightProbe {
   private:
     Kernel kernel(const std::string& name, const std::string& file, BufferTable buffers);
     ShaderSources sources_;
-    std::string defines_;
+    Features features_;
     Buffer records_, texels_, lights_;
 };
 
