@@ -60,25 +60,37 @@ void enter_grid(uint vertex, vec3 position, float radius, uint key) {
     grid_places[vertex] = GridPlace(bucket, atomicAdd(bucket_starts[bucket], 1u), key);
 }
 
+// A walk over the vertices around a point. A lane has one at a time: its lists are not in the struct.
 struct GridQuery {
     vec3 position;
-    float radius2;   // m²
-    uint next, end;  // candidates of the cell being walked: places in grid_entries
-    uint cells;      // yet to be walked, a bit each: 8 of the lower level, then 8 of the upper. Bits x, y, z of its number: the
-                     // neighbour on the nearer side along that axis instead of the cell of `position`
-    int level;       // the lower
+    float radius2;      // m²
+    uint next, end;     // candidates of the cell being walked: places in grid_entries
+    uint cells;         // to be walked after it: in grid_query_cells
+    uint found, given;  // in grid_query_found; how many of them the caller has had
 };
+const uint GRID_QUERY_ROOM = 16u;
+uvec2 grid_query_cells[16];             // where the candidates of a cell start and end; of two levels at most
+uint grid_query_found[GRID_QUERY_ROOM];  // vertices within the radius: places in grid_entries
 
-// Those of the 2 x 2 x 2 cells that the sphere of the query reaches; rounding never loses one.
-uint reached_cells(vec3 position, float radius2, int level) {
-    vec3 p = position * cells_a_metre(level);
-    vec3 f = p - floor(p);
+// Lists those of the 2 x 2 x 2 cells of a level that the sphere of the query reaches, unless they are empty. All lanes do
+// this together, before they go separate ways.
+void list_cells(inout GridQuery q, int level) {
+    vec3 p = q.position * cells_a_metre(level);
+    vec3 own = floor(p), f = p - own;
+    ivec3 cell = ivec3(own), other = cell + mix(ivec3(1), ivec3(-1), lessThan(f, vec3(0.5)));
     vec3 d = min(f, 1.0 - f) * cell_side(level);  // to the faces that part the two cells of each axis
     d *= d;
-    float limit = radius2 * 1.00001;
-    uint cells = 1u | (d.x <= limit ? 2u : 0u) | (d.y <= limit ? 4u : 0u) | (d.z <= limit ? 16u : 0u);
-    cells |= (d.x + d.y <= limit ? 8u : 0u) | (d.x + d.z <= limit ? 32u : 0u) | (d.y + d.z <= limit ? 64u : 0u);
-    return cells | (d.x + d.y + d.z <= limit ? 128u : 0u);
+    float limit = q.radius2 * 1.00001;  // rounding never loses a cell
+    for (uint k = 0u; k < 8u; ++k) {
+        bvec3 aside = bvec3(k & 1u, k & 2u, k & 4u);
+        vec3 e = mix(vec3(0), d, aside);
+        if (e.x + e.y + e.z <= limit) {
+            uint bucket = grid_bucket(mix(cell, other, aside), level);
+            uint first = bucket_starts[bucket], end = bucket_starts[bucket + 1u];
+            grid_query_cells[q.cells] = uvec2(first, end);
+            q.cells += end > first ? 1u : 0u;
+        }
+    }
 }
 
 // All light vertices of the grid within `radius` = r(position), in m.
@@ -87,50 +99,51 @@ void begin_query(out GridQuery q, vec3 position, float radius) {
     float reach = radius * 1.00001;
     q.position = position;
     q.radius2 = radius * radius;
-    q.next = q.end = 0u;
-    q.level = grid_level(0.95 * radius, max(extent - reach, 0.0));
-    q.cells = reached_cells(position, q.radius2, q.level);
+    q.next = q.end = q.cells = q.found = q.given = 0u;
+    int lower = grid_level(0.95 * radius, max(extent - reach, 0.0));
     int upper = grid_level(1.05 * radius, extent + reach);
-    if (upper != q.level) q.cells |= reached_cells(position, q.radius2, upper) << 8;
+    for (int level = 0; level < 2; ++level)  // no loop that lanes leave one by one (see lib/light_selection.glsl)
+        if (lower + level <= upper) list_cells(q, lower + level);
 }
 
-void enter_next_cell(inout GridQuery q) {
-    uint cell = uint(findLSB(q.cells));
-    q.cells &= q.cells - 1u;
-    int level = q.level + int(cell >> 3);
-    vec3 p = q.position * cells_a_metre(level);
-    vec3 own = floor(p);
-    ivec3 aside = ivec3(cell, cell >> 1, cell >> 2) & 1;
-    aside = mix(aside, -aside, lessThan(p - own, vec3(0.5)));
-    uint bucket = grid_bucket(ivec3(own) + aside, level);
-    q.next = bucket_starts[bucket];
-    q.end = bucket_starts[bucket + 1u];
+// Walks on until the list of what is found is full or no candidates are left. A step of the loop enters at most one cell and
+// looks at one candidate, and the lanes leave it together.
+void find_vertices(inout GridQuery q, bool wanted) {
+    bool walking = wanted;
+    do {
+        if (walking) {
+            if (q.next == q.end && q.cells > 0u) {
+                q.cells--;
+                q.next = grid_query_cells[q.cells].x;
+                q.end = grid_query_cells[q.cells].y;
+            }
+            walking = q.next < q.end;
+            if (walking) {
+                vec3 d = grid_entries[q.next].xyz - q.position;
+                precise float d2 = d.x * d.x + d.y * d.y + d.z * d.z;
+                grid_query_found[q.found] = q.next;
+                q.found += d2 <= q.radius2 ? 1u : 0u;
+                q.next++;
+                walking = q.found < GRID_QUERY_ROOM;
+            }
+        }
+    } while (subgroupAny(walking));
 }
 
-// The next vertex within the radius; false when there are no more. Each vertex comes once, in an order that is certain.
-// A step of the loop enters at most one cell and looks at one candidate. The lanes leave it together (see lib/light_selection),
-// so that what the caller does with a vertex is done for as many of them as possible at a time.
+// The next vertex within the radius; false when there are no more. Each comes once, in an order that does not depend on other
+// lanes. Vertices are found ahead of their use, so that lanes whose neighbours come late do not hold up the caller's work.
 bool next_candidate(inout GridQuery q, out uint vertex, out vec3 position) {
     vertex = NO_LIGHT_VERTEX;
     position = q.position;
-    bool searching = true;
-    do {
-        if (searching) {
-            if (q.next >= q.end && q.cells != 0u) enter_next_cell(q);
-            if (q.next < q.end) {
-                vec4 entry = grid_entries[q.next];
-                q.next++;
-                vec3 d = entry.xyz - q.position;
-                precise float d2 = d.x * d.x + d.y * d.y + d.z * d.z;
-                if (d2 <= q.radius2) {
-                    vertex = floatBitsToUint(entry.w);
-                    position = entry.xyz;
-                    searching = false;
-                }
-            } else if (q.cells == 0u) {
-                searching = false;
-            }
-        }
-    } while (subgroupAny(searching));
-    return vertex != NO_LIGHT_VERTEX;
+    bool wanted = q.given == q.found;
+    if (subgroupAny(wanted)) {
+        if (wanted) q.given = q.found = 0u;
+        find_vertices(q, wanted);
+    }
+    if (q.given == q.found) return false;
+    vec4 entry = grid_entries[grid_query_found[q.given]];
+    q.given++;
+    vertex = floatBitsToUint(entry.w);
+    position = entry.xyz;
+    return true;
 }

@@ -35,10 +35,11 @@ class VertexMapProbe {
                KernelTimings* timings = nullptr);
     // Keys of the vertices within the radius of each point, in the order of the walk.
     std::vector<std::vector<uint32_t>> neighbours(const std::vector<GridPoint>& points, uint32_t room = 256);
-    // The same walk, summed up: neighbours a point.
-    double count_neighbours(const std::vector<GridPoint>& points, KernelTimings* timings);
+    // The same walk with the work of a simple merge for each neighbour; returns neighbours a point.
+    double merge(const std::vector<GridPoint>& points, KernelTimings* timings);
 
     VertexMap map;
+    double processor_seconds = 0;               // of the last store, of the best of five runs of merge
     std::vector<LightVertex> vertices() const;  // all of the capacity
     std::vector<glm::vec4> entries() const;     // of the grid
     Kernel kernel(const std::string& name, const std::string& text, BufferTable buffers);
