@@ -17,25 +17,29 @@ struct ImageSize {
     uint32_t width = 0, height = 0;
 };
 
-struct RenderOptions {
+// What render, inspect and bench open.
+struct SceneChoice {
     std::filesystem::path scene;
+    std::filesystem::path environment;  // image that takes the place of the scene's environment; may be empty
+    std::filesystem::path shaders;      // empty = those in the binary
+    std::string receiver;               // name; empty = the first of the scene
+    std::string device;                 // name, part of one, or index; empty = the best there is
+    std::optional<ImageSize> size;      // else 512 rows, and columns by the camera's aspect ratio
+};
+
+struct RenderOptions : SceneChoice {
     std::filesystem::path output;    // never empty; default_output(scene) where none was given
     std::optional<uint64_t> passes;  // exactly one of the three goals is set; 64 passes by default
     std::optional<double> seconds, error;
-    std::optional<ImageSize> size;      // else 512 rows, and columns by the camera's aspect ratio
-    std::string receiver;               // name; empty = the first of the scene
-    std::filesystem::path environment;  // image that takes the place of the scene's environment; may be empty
     Algorithm algorithm = Algorithm::automatic;
     ColorMode color = ColorMode::automatic;
     PolarizationMode polarization = PolarizationMode::automatic;
     Schedule schedule = Schedule::automatic;
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths
     uint64_t seed = 0;
-    std::string device;  // name, part of one, or index; empty = the best there is
     std::filesystem::path checkpoint, resume, stats;  // empty = none
     bool aovs = false, quiet = false;
-    std::filesystem::path shaders;  // empty = those in the binary
-    std::string command_line;       // as typed, for the image's attributes
+    std::string command_line;  // as typed, for the image's attributes
 };
 
 struct CompareOptions {
@@ -43,10 +47,7 @@ struct CompareOptions {
     std::optional<double> max_relmse;
 };
 
-struct InspectOptions {
-    std::filesystem::path scene, environment, shaders;
-    std::string receiver, device;
-};
+struct InspectOptions : SceneChoice {};
 
 struct ClassesOptions {
     std::string name;  // empty = all

@@ -1,20 +1,15 @@
 // etendue inspect: what a scene holds, what it makes the shaders compile, and why.
 #include <fmt/core.h>
 
-#include "host/commands.h"
+#include "host/commands/open_scene.h"
 #include "host/render/renderer.h"
-#include "host/scene/gltf.h"
 
 namespace etendue {
 
 int inspect_command(const InspectOptions& options) {
-    const SceneDescription description = import_gltf(options.scene);
-    auto device = create_device({options.device, false});
-    SceneOptions scene_options;
-    scene_options.shaders = options.shaders;
-    scene_options.environment = options.environment;
-    scene_options.cache_folder = default_cache_folder();
-    Scene scene = compile_scene(*device, description, scene_options);
+    OpenedScene opened = open_scene(options);
+    const Device& device = *opened.device;
+    Scene& scene = opened.scene;
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
 
     fmt::print("scene      {}\n", options.scene.string());
@@ -57,8 +52,8 @@ int inspect_command(const InspectOptions& options) {
 
     if (!scene.receivers.empty()) {
         RenderSettings settings;
-        settings.receiver = scene.receivers.front().ref;
-        const Renderer renderer(*device, scene, settings);
+        settings.receiver = choose_receiver(scene, options).ref;
+        const Renderer renderer(*opened.device, scene, settings);
         fmt::print("algorithm  backward, {} schedule\n", schedule_name(renderer.schedule()));
     }
     fmt::print("kernels\n");
@@ -66,8 +61,8 @@ int inspect_command(const InspectOptions& options) {
         fmt::print(
             "    {:<18} {} bytes of SPIR-V, {}\n", k.name, k.spirv_bytes,
             k.from_cache ? std::string("from the cache") : fmt::format("compiled in {:.2f} s", k.seconds));
-    fmt::print("memory     {:.1f} MiB on {} ({})\n", double(device->peak_bytes_allocated) / (1 << 20),
-               device->description.name, device->description.driver);
+    fmt::print("memory     {:.1f} MiB on {} ({})\n", double(device.peak_bytes_allocated) / (1 << 20),
+               device.description.name, device.description.driver);
     return 0;
 }
 

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <glm/glm.hpp>
 
-#include "host/commands.h"
+#include "host/commands/open_scene.h"
 #include "host/error.h"
 #include "host/image/atomic_file.h"
 #include "host/image/checkpoint.h"
@@ -12,7 +12,6 @@
 #include "host/interrupt.h"
 #include "host/progress.h"
 #include "host/render/renderer.h"
-#include "host/scene/gltf.h"
 
 namespace etendue {
 namespace {
@@ -25,25 +24,6 @@ double seconds_since(Clock::time_point start) {
 constexpr double batch_seconds = 0.25;     // of work between two looks at clock, interrupt and progress
 constexpr double checkpoint_seconds = 30;  // between two checkpoints
 constexpr uint32_t aov_samples = 16;       // primary rays a pixel for --aovs
-
-const Receiver& choose_receiver(const Scene& scene, const RenderOptions& options) {
-    if (scene.receivers.empty())
-        fail_input("{}: the scene has no camera and no receiver", options.scene.string());
-    if (options.receiver.empty()) return scene.receivers.front();
-    std::string names;
-    for (const Receiver& receiver : scene.receivers) {
-        if (receiver.name == options.receiver) return receiver;
-        names += (names.empty() ? "" : ", ") + receiver.name;
-    }
-    fail_input("--receiver {}: no such receiver in {}; there are: {}", options.receiver,
-               options.scene.string(), names);
-}
-
-ImageSize image_size(const Receiver& receiver, const RenderOptions& options) {
-    if (options.size) return *options.size;
-    const float aspect = receiver.aspect_ratio > 0 ? receiver.aspect_ratio : 1.0f;
-    return {std::max(1u, uint32_t(std::lround(512 * aspect))), 512};
-}
 
 // Of everything that the device holds of the scene and of what it compiles, whichever files that came from.
 uint64_t scene_hash(const Scene& scene) {
@@ -159,13 +139,9 @@ int render_command(const RenderOptions& given) {
     progress.style = progress_style(options.quiet);
 
     const auto start = Clock::now();
-    const SceneDescription description = import_gltf(options.scene);
-    auto device = create_device({options.device, false});
-    SceneOptions scene_options;
-    scene_options.shaders = options.shaders;
-    scene_options.environment = options.environment;
-    scene_options.cache_folder = default_cache_folder();
-    Scene scene = compile_scene(*device, description, scene_options);
+    OpenedScene opened = open_scene(options);
+    Device& device = *opened.device;
+    Scene& scene = opened.scene;
     for (const std::string& warning : scene.warnings) show_note(progress, "warning: " + warning);
     const Receiver& receiver = choose_receiver(scene, options);
     if (scene.lights == 0)
@@ -180,10 +156,10 @@ int render_command(const RenderOptions& given) {
     settings.schedule = options.schedule;
     settings.vertex_bytes = options.vertex_bytes;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
-    Renderer renderer(*device, scene, settings);
+    Renderer renderer(device, scene, settings);
     nlohmann::json identity;
     if (!options.checkpoint.empty() || !options.resume.empty())
-        identity = checkpoint_identity(options, scene, *options.size, receiver, *device);
+        identity = checkpoint_identity(options, scene, *options.size, receiver, device);
     if (!options.resume.empty()) load_checkpoint(options.resume, identity, renderer);
     const double setup_seconds = seconds_since(start);
 
@@ -231,13 +207,13 @@ int render_command(const RenderOptions& given) {
                         {"passes", double(renderer.passes())},
                         {"rays", double(renderer.counters().rays + renderer.counters().shadow_rays)},
                         {"seconds", renderer.seconds()},
-                        {"device", device->description.name},
-                        {"driver", device->description.driver},
+                        {"device", device.description.name},
+                        {"driver", device.description.driver},
                         {"version", std::string(ETENDUE_VERSION)}};
     if (!options.aovs) remove_channels(image, "error.");
     write_exr(options.output, image);
     if (!options.stats.empty())
-        write_stats(options.stats, stats(options, *device, scene, renderer, error, setup_seconds));
+        write_stats(options.stats, stats(options, device, scene, renderer, error, setup_seconds));
     if (renderer.counters().non_finite)
         show_note(progress, fmt::format("warning: {} samples were not finite and count as black",
                                         renderer.counters().non_finite));

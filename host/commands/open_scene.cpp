@@ -1,0 +1,42 @@
+#include "host/commands/open_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/error.h"
+#include "host/scene/gltf.h"
+
+namespace etendue {
+
+OpenedScene open_scene(const SceneChoice& choice) {
+    const SceneDescription description = import_gltf(choice.scene);
+    OpenedScene opened;
+    opened.device = create_device({choice.device, false});
+    SceneOptions options;
+    options.shaders = choice.shaders;
+    options.environment = choice.environment;
+    options.cache_folder = default_cache_folder();
+    opened.scene = compile_scene(*opened.device, description, options);
+    return opened;
+}
+
+const Receiver& choose_receiver(const Scene& scene, const SceneChoice& choice) {
+    if (scene.receivers.empty())
+        fail_input("{}: the scene has no camera and no receiver", choice.scene.string());
+    if (choice.receiver.empty()) return scene.receivers.front();
+    std::string names;
+    for (const Receiver& receiver : scene.receivers) {
+        if (receiver.name == choice.receiver) return receiver;
+        names += (names.empty() ? "" : ", ") + receiver.name;
+    }
+    fail_input("--receiver {}: no such receiver in {}; there are: {}", choice.receiver, choice.scene.string(),
+               names);
+}
+
+ImageSize image_size(const Receiver& receiver, const SceneChoice& choice) {
+    if (choice.size) return *choice.size;
+    const float aspect = receiver.aspect_ratio > 0 ? receiver.aspect_ratio : 1.0f;
+    return {std::max(1u, uint32_t(std::lround(512 * aspect))), 512};
+}
+
+}  // namespace etendue

@@ -1,0 +1,25 @@
+// The opening that render, inspect and bench share: a device, the scene compiled for it, the receiver to
+// render and its size.
+#pragma once
+#include <memory>
+
+#include "host/commands.h"
+#include "host/scene/scene.h"
+
+namespace etendue {
+
+struct OpenedScene {
+    std::unique_ptr<Device> device;
+    Scene scene;
+};
+
+// Fails with one line for what is wrong in the scene or its files, and where there is no such device.
+OpenedScene open_scene(const SceneChoice& choice);
+
+// The receiver of that name, else the first.
+const Receiver& choose_receiver(const Scene& scene, const SceneChoice& choice);
+
+// As chosen, else 512 rows, and columns by the receiver's aspect ratio.
+ImageSize image_size(const Receiver& receiver, const SceneChoice& choice);
+
+}  // namespace etendue
