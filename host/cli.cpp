@@ -1,9 +1,8 @@
 #include "host/cli.h"
 
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <cmath>
 
+#include "host/cli_values.h"
 #include "host/error.h"
 
 #ifndef ETENDUE_VERSION
@@ -18,55 +17,12 @@ const char* overview =
     "failed,\n"
     "130 interrupted (the image so far is written).";
 
-// Arguments as text; CLI11's own conversions take NaN, hexadecimal and trailing characters for numbers.
+// Arguments as text (host/cli_values.h).
 struct RenderArguments {
     std::optional<std::string> passes, seconds, error, size;
     std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto", schedule = "auto",
                 vertex_memory = "256";
 };
-
-uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most) {
-    uint64_t value = 0;
-    auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc() || end != text.data() + text.size() || value < least || value > most)
-        fail_input("{} {}: must be a whole number from {} to {}", option, text, least, most);
-    return value;
-}
-
-double parse_positive(const std::string& text, const char* option, const char* unit) {
-    double value = 0;
-    auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failure != std::errc() || end != text.data() + text.size() || !(value > 0) || !std::isfinite(value))
-        fail_input("{} {}: must be a number above 0{}", option, text, unit);
-    return value;
-}
-
-ImageSize parse_size(const std::string& text) {
-    size_t cross = text.find_first_of("xX");
-    if (cross == std::string::npos)
-        fail_input("--size {}: must be WIDTHxHEIGHT in pixels, as in 640x480", text);
-    return {uint32_t(parse_count(text.substr(0, cross), "--size, width", 1, 65536)),
-            uint32_t(parse_count(text.substr(cross + 1), "--size, height", 1, 65536))};
-}
-
-template <class Choice>
-Choice parse_choice(const std::string& text, const char* option,
-                    std::initializer_list<std::pair<const char*, Choice>> choices) {
-    std::string allowed;
-    for (const auto& [name, value] : choices) {
-        if (text == name) return value;
-        allowed += allowed.empty() ? name : std::string(", ") + name;
-    }
-    fail_input("{} {}: not available; allowed: {}", option, text, allowed);
-}
-
-Algorithm parse_algorithm(const std::string& text, const char* option) {
-    return parse_choice<Algorithm>(text, option,
-                                   {{"auto", Algorithm::automatic},
-                                    {"backward", Algorithm::backward},
-                                    {"forward", Algorithm::forward},
-                                    {"bidirectional", Algorithm::bidirectional}});
-}
 
 std::string quoted_command(int argc, const char* const* argv) {
     std::string line = "etendue";
@@ -150,7 +106,7 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     if (arguments.size) options.size = parse_size(*arguments.size);
     options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
     options.algorithm = parse_algorithm(arguments.algorithm, "--algorithm");
-    options.vertex_bytes = parse_count(arguments.vertex_memory, "--vertex-memory", 1, 1 << 20) << 20;
+    options.vertex_bytes = parse_mebibytes(arguments.vertex_memory, "--vertex-memory");
     options.color = parse_choice<ColorMode>(arguments.color, "--color",
                                             {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}});
     options.polarization = parse_choice<PolarizationMode>(
@@ -182,6 +138,56 @@ CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::optional<std:
         "error\n"
         "layer (render --aovs), a z-test tells whether they differ by more than their noise.");
     return compare;
+}
+
+struct BenchArguments {
+    std::optional<std::string> seconds, size, reference_relmse;
+    std::string algorithms = "backward,forward,bidirectional,auto", seed = "0", vertex_memory = "256";
+};
+
+CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& arguments) {
+    CLI::App* bench = app.add_subcommand("bench", "Error against time of the algorithms: table and plots");
+    bench->add_option("SCENE", options.scenes, "Scenes; none draws the page in DIR again")->option_text("…");
+    bench->add_option("-o,--output", options.output, "Folder for bench.csv, index.html and images")
+        ->required()
+        ->option_text("DIR");
+    bench
+        ->add_option("--reference", options.reference,
+                     "Image to measure against (default: one is rendered, in four times SEC)")
+        ->option_text("REF.exr");
+    bench
+        ->add_option("--reference-relmse", arguments.reference_relmse,
+                     "relMSE that the reference itself has (default: by its error layer, else 0)")
+        ->option_text("X");
+    bench->add_option("--algorithms", arguments.algorithms, "Of auto, backward, forward, bidirectional; all")
+        ->option_text("A,B,…");
+    bench->add_option("--time", arguments.seconds, "Seconds of rendering for each algorithm (default: 30)")
+        ->option_text("SEC");
+    bench->add_option("--size", arguments.size, "As for render (default: the reference's)")
+        ->option_text("WxH");
+    bench->add_option("--receiver", options.receiver, "As for render")->option_text("NAME");
+    bench->add_option("--environment", options.environment, "As for render")->option_text("FILE.hdr|exr");
+    bench->add_option("--vertex-memory", arguments.vertex_memory, "As for render")->option_text("MIB");
+    bench->add_option("--seed", arguments.seed, "First seed (default: 0)")->option_text("N");
+    bench->add_option("--device", options.device, "As for render")->option_text("NAME|INDEX");
+    bench->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    bench->add_flag("-q,--quiet", options.quiet, "No progress and no warnings");
+    bench->get_option("SCENE")->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    return bench;
+}
+
+void finish_bench(BenchOptions& options, const BenchArguments& arguments) {
+    if (arguments.seconds) options.seconds = parse_positive(*arguments.seconds, "--time", ", in seconds");
+    if (arguments.size) options.size = parse_size(*arguments.size);
+    if (arguments.reference_relmse)
+        options.reference_relmse = parse_positive(*arguments.reference_relmse, "--reference-relmse", "");
+    if (options.reference_relmse && options.reference.empty())
+        fail_input("--reference-relmse: goes with --reference");
+    if (!options.reference.empty() && options.scenes.size() > 1)
+        fail_input("--reference: goes with one scene, not with {}", options.scenes.size());
+    options.seed = parse_count(arguments.seed, "--seed", 0, INT32_MAX);
+    options.vertex_bytes = parse_mebibytes(arguments.vertex_memory, "--vertex-memory");
+    options.algorithms = parse_algorithms(arguments.algorithms, "--algorithms");
 }
 
 CLI::App* add_inspect(CLI::App& app, InspectOptions& options) {
@@ -229,21 +235,24 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     RenderArguments render_arguments;
     CompareOptions compare_options;
     std::optional<std::string> max_relmse;
+    BenchOptions bench_options;
+    BenchArguments bench_arguments;
     InspectOptions inspect_options;
     ClassesOptions classes_options;
     CLI::App* render = add_render(app, render_options, render_arguments);
     CLI::App* compare = add_compare(app, compare_options, max_relmse);
+    CLI::App* bench = add_bench(app, bench_options, bench_arguments);
     CLI::App* inspect = add_inspect(app, inspect_options);
     CLI::App* classes = add_classes(app, classes_options);
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
 
-    const auto commands = {render, compare, inspect, classes, devices};
+    const auto commands = {render, compare, bench, inspect, classes, devices};
     std::string first = argc < 2 ? "" : argv[1];
     bool known = first.starts_with("-");
     for (CLI::App* command : commands) known = known || first == command->get_name();
     if (!known)
-        fail_input("{}; one of: render, compare, inspect, classes, devices (see etendue --help)",
+        fail_input("{}; one of: render, compare, bench, inspect, classes, devices (see etendue --help)",
                    argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
 
     CLI::App* chosen = &app;
@@ -270,6 +279,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     if (compare->parsed()) {
         if (max_relmse) compare_options.max_relmse = parse_positive(*max_relmse, "--max-relmse", "");
         return compare_options;
+    }
+    if (bench->parsed()) {
+        finish_bench(bench_options, bench_arguments);
+        return bench_options;
     }
     if (inspect->parsed()) return inspect_options;
     if (classes->parsed()) return classes_options;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "host/render/modes.h"
 
@@ -49,6 +50,18 @@ struct CompareOptions {
 
 struct InspectOptions : SceneChoice {};
 
+struct BenchOptions : SceneChoice {             // `scene` is each of `scenes` in turn
+    std::vector<std::filesystem::path> scenes;  // none: the page of `output` is drawn again
+    std::filesystem::path output;               // folder
+    std::filesystem::path reference;            // image; empty = one is rendered
+    std::optional<double> reference_relmse;     // that the reference itself has; else by its error layer
+    std::vector<Algorithm> algorithms;
+    double seconds = 30;  // of rendering for each algorithm
+    uint64_t vertex_bytes = uint64_t(256) << 20;
+    uint64_t seed = 0;
+    bool quiet = false;
+};
+
 struct ClassesOptions {
     std::string name;  // empty = all
     std::filesystem::path shaders;
@@ -56,6 +69,7 @@ struct ClassesOptions {
 
 int render_command(const RenderOptions& options);
 int compare_command(const CompareOptions& options);
+int bench_command(const BenchOptions& options);
 int inspect_command(const InspectOptions& options);
 int classes_command(const ClassesOptions& options);
 int devices_command();

@@ -11,7 +11,7 @@ packages=(
     cmake ninja-build g++ pkg-config clang-format
     libvulkan-dev vulkan-validationlayers libvulkan1
     glslang-dev spirv-tools spirv-headers libglm-dev libtinygltf-dev libopenexr-dev libfmt-dev
-    libcli11-dev nlohmann-json3-dev doctest-dev libstb-dev
+    libcli11-dev nlohmann-json3-dev doctest-dev libstb-dev gnuplot-nox
 )
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
 apt_get() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 "$@"; }

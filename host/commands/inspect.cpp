@@ -10,6 +10,8 @@ int inspect_command(const InspectOptions& options) {
     OpenedScene opened = open_scene(options);
     const Device& device = *opened.device;
     Scene& scene = opened.scene;
+    const bool any = !scene.receivers.empty() || !options.receiver.empty();
+    const Receiver* chosen = any ? &choose_receiver(scene, options) : nullptr;
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
 
     fmt::print("scene      {}\n", options.scene.string());
@@ -50,9 +52,9 @@ int inspect_command(const InspectOptions& options) {
             "a surface class lets light pass unscattered: shadow rays go through",
             "shadow rays end at the first surface");
 
-    if (!scene.receivers.empty()) {
+    if (chosen) {
         RenderSettings settings;
-        settings.receiver = choose_receiver(scene, options).ref;
+        settings.receiver = chosen->ref;
         const Renderer renderer(*opened.device, scene, settings);
         fmt::print("algorithm  backward, {} schedule\n", schedule_name(renderer.schedule()));
     }

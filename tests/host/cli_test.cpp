@@ -99,7 +99,7 @@ TEST_CASE("numbers that are none, out of range or not finite are refused") {
 
 TEST_CASE("wrong usage is one line that says what is allowed") {
     CHECK(complaint({}) ==
-          "no command given; one of: render, compare, inspect, classes, devices (see etendue --help)");
+          "no command given; one of: render, compare, bench, inspect, classes, devices (see etendue --help)");
     CHECK(complaint({"paint"}).starts_with("no command 'paint'; one of: render,"));
     CHECK(complaint({"render"}) == "SCENE is required (see etendue render --help)");
     CHECK(complaint({"render", ""}) == "SCENE is empty (see etendue render --help)");
@@ -111,6 +111,15 @@ TEST_CASE("wrong usage is one line that says what is allowed") {
     CHECK(complaint({"render", "a.gltf", "--bogus"}) ==
           "The following argument was not expected: --bogus (see etendue render --help)");
     CHECK(complaint({"compare", "a.exr"}) != "no error");
+    CHECK(complaint({"bench", "a.gltf"}) == "--output is required (see etendue bench --help)");
+    CHECK(complaint({"bench", "a.gltf", "-o", "d", "--algorithms", "auto,auto"}) ==
+          "--algorithms: auto is named twice");
+    CHECK(complaint({"bench", "a.gltf", "-o", "d", "--algorithms", "auto,"}) ==
+          "--algorithms : not available; allowed: auto, backward, forward, bidirectional");
+    CHECK(complaint({"bench", "a.gltf", "b.gltf", "-o", "d", "--reference", "r.exr"}) ==
+          "--reference: goes with one scene, not with 2");
+    CHECK(complaint({"bench", "a.gltf", "-o", "d", "--reference-relmse", "1e-4"}) ==
+          "--reference-relmse: goes with --reference");
     CHECK(complaint({"devices", "extra"}) != "no error");
 }
 
@@ -123,6 +132,17 @@ TEST_CASE("help and version are answers, not errors") {
 
 TEST_CASE("the other commands are understood") {
     CHECK(std::get<CompareOptions>(parse({"compare", "a", "b", "--max-relmse", "1e-3"})).max_relmse == 1e-3);
+    const auto bench = std::get<BenchOptions>(
+        parse({"bench", "a.gltf", "b.gltf", "-o", "dir", "--algorithms", "auto,forward", "--time", "2.5",
+               "--size", "8x4", "--seed", "3", "--vertex-memory", "16"}));
+    CHECK(bench.scenes == std::vector<std::filesystem::path>{"a.gltf", "b.gltf"});
+    CHECK(bench.output == "dir");
+    CHECK(bench.algorithms == std::vector<Algorithm>{Algorithm::automatic, Algorithm::forward});
+    CHECK(bench.seconds == 2.5);
+    CHECK(bench.size->height == 4);
+    CHECK(bench.seed == 3);
+    CHECK(bench.vertex_bytes == 16 << 20);
+    CHECK(std::get<BenchOptions>(parse({"bench", "-o", "dir"})).algorithms.size() == 4);
     CHECK(std::get<InspectOptions>(parse({"inspect", "a.gltf", "--device", "llvmpipe"})).device ==
           "llvmpipe");
     CHECK(std::get<ClassesOptions>(parse({"classes", "sphere"})).name == "sphere");
