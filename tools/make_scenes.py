@@ -118,6 +118,68 @@ def cornell_box():
     return s
 
 
+def caustic_box():
+    s = Gltf(
+        "caustic_box",
+        "A closed box of 2 m with a glass sphere (index 1.5) and a mirror sphere of radius 0.4 m under a lamp of 0.1 x 0.1 m"
+        " that sends pi lm times its luminance 400 x 0.01 m². All of the lamp's light that has passed the glass lies in a bright spot"
+        " in its shadow on the floor, and the mirror throws a wide bright arc on floor and walls; both are seen in the spheres, too.",
+    )
+    s.medium("glass", ior=1.5)
+    white = s.surface("white", "lambertian", reflectance=0.7)
+    red = s.surface("red", "lambertian", reflectance=[0.63, 0.07, 0.05])
+    green = s.surface("green", "lambertian", reflectance=[0.15, 0.48, 0.09])
+    glass = s.surface("glass", "dielectric", inside="glass")
+    mirror = s.surface("mirror", "conductor", reflectance=0.95)
+    lamp = s.emitter("lamp", 400, (1, 1, 1))
+    a = 1.0
+    s.quad("floor", white, [[-a, 0, a], [a, 0, a], [a, 0, -a], [-a, 0, -a]])
+    s.quad("ceiling", white, [[-a, 2, -a], [a, 2, -a], [a, 2, a], [-a, 2, a]])
+    s.quad("back", white, [[-a, 0, -a], [a, 0, -a], [a, 2, -a], [-a, 2, -a]])
+    s.quad("front", white, [[a, 0, a], [-a, 0, a], [-a, 2, a], [a, 2, a]])
+    s.quad("left", red, [[-a, 0, a], [-a, 0, -a], [-a, 2, -a], [-a, 2, a]])
+    s.quad("right", green, [[a, 0, -a], [a, 0, a], [a, 2, a], [a, 2, -a]])
+    s.quad("lamp", lamp, [[-0.05, 1.99, -0.05], [0.05, 1.99, -0.05], [0.05, 1.99, 0.05], [-0.05, 1.99, 0.05]])
+    s.shape("glass sphere", "sphere", glass, [0.42, 0.4, -0.15], radius=0.4)
+    s.shape("mirror sphere", "sphere", mirror, [-0.45, 0.4, -0.5], radius=0.4)
+    s.camera([0, 1.1, 0.98], [0, 0.75, -0.3], 80, 1)
+    return s
+
+
+def pool():
+    s = Gltf(
+        "pool",
+        "A basin of 3 x 3 m, 1 m deep, full of water (index 1.33) whose surface ripples, under a square lamp of 0.2 m 3 m above the water."
+        " The water bends the lamp's light into a net of bright lines on the floor, which is seen through the water: a path that no"
+        " backward ray finds but by hitting the lamp.",
+    )
+    s.medium("water", ior=1.33)
+    tiles = s.surface("tiles", "lambertian", reflectance=[0.55, 0.65, 0.7])
+    water = s.surface("water", "dielectric", inside="water")
+    lamp = s.emitter("lamp", 300, (1, 1, 1))
+    a, rim = 1.5, 0.15
+    s.quad("floor", tiles, [[-a, -1, a], [a, -1, a], [a, -1, -a], [-a, -1, -a]])
+    s.quad("back", tiles, [[-a, -1, -a], [a, -1, -a], [a, rim, -a], [-a, rim, -a]])
+    s.quad("front", tiles, [[a, -1, a], [-a, -1, a], [-a, rim, a], [a, rim, a]])
+    s.quad("left", tiles, [[-a, -1, a], [-a, -1, -a], [-a, rim, -a], [-a, rim, a]])
+    s.quad("right", tiles, [[a, -1, -a], [a, -1, a], [a, rim, a], [a, rim, -a]])
+    waves = [(0.012, 5.1, 2.3, 0.4), (0.010, -3.7, 6.4, 1.9), (0.006, 9.8, -5.2, 0.7), (0.004, 3.1, 13.0, 2.6)]
+    n = 64
+    positions, triangles = [], []
+    for j in range(n + 1):
+        for i in range(n + 1):
+            x, z = a * (2 * i / n - 1), a * (2 * j / n - 1)
+            positions.append([x, sum(h * math.sin(kx * x + kz * z + p) for h, kx, kz, p in waves), z])
+    for j in range(n):
+        for i in range(n):
+            k = j * (n + 1) + i
+            triangles += [[k, k + n + 1, k + n + 2], [k, k + n + 2, k + 1]]
+    s.mesh("water", water, positions, triangles)
+    s.quad("lamp", lamp, [[-0.1, 3, -0.1], [0.1, 3, -0.1], [0.1, 3, 0.1], [-0.1, 3, 0.1]])
+    s.camera([0, 2.6, 3.4], [0, -0.6, 0], 45, 1)
+    return s
+
+
 def spheres():
     s = Gltf(
         "spheres",
@@ -380,6 +442,8 @@ def furnace_closed():
 SCENES = [
     example,
     cornell_box,
+    caustic_box,
+    pool,
     spheres,
     lamps,
     materials,

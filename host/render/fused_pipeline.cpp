@@ -5,9 +5,12 @@
 namespace etendue {
 
 Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const RenderSettings& s,
+                                       const Techniques& techniques, ForwardRays* forward,
                                        const BufferTable& film)
-    : Pipeline(s) {
-    trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", film);
+    : Pipeline(s, forward) {
+    trace_paths =
+        make_kernel(device, scene, "kernels/trace_paths.comp", film,
+                    techniques.backward_defines() + (forward ? forward->defines() : ""));
     // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
     const uint32_t pixels = settings.width * settings.height;
     const uint32_t pixels_a_group = trace_paths.group_size() * (device.description.type == "CPU" ? 8 : 1);
@@ -16,14 +19,19 @@ Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const Rende
 
 void Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
                                   KernelTimings& timings) {
-    commands.dispatch(trace_paths, groups,
-                      {{"receiver", settings.receiver},
-                       {"width", settings.width},
-                       {"height", settings.height},
-                       {"first_sample", uint32_t(first)},
-                       {"sample_count", count},
-                       {"seed", settings.seed}});
-    commands.run(&timings);
+    // With forward rays pass by pass: each meets its own.
+    const uint32_t at_once = forward ? 1 : count;
+    for (uint32_t done = 0; done < count; done += at_once) {
+        if (forward) forward->trace(commands, first + done, settings.seed, timings);
+        commands.dispatch(trace_paths, groups,
+                          {{"receiver", settings.receiver},
+                           {"width", settings.width},
+                           {"height", settings.height},
+                           {"first_sample", uint32_t(first) + done},
+                           {"sample_count", at_once},
+                           {"seed", settings.seed}});
+        commands.run(&timings);
+    }
 }
 
 void Renderer::FusedPipeline::warm_up(CommandList& commands) {

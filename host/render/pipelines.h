@@ -1,22 +1,25 @@
 // The schedules of a pass. A pipeline owns its kernels and path buffers and records passes into a command
 // list.
 #pragma once
+#include "host/render/forward_rays.h"
 #include "host/render/renderer.h"
 
 namespace etendue {
 
 struct Renderer::Pipeline {
-    explicit Pipeline(const RenderSettings& settings) : settings(settings) {}
+    Pipeline(const RenderSettings& settings, ForwardRays* forward) : settings(settings), forward(forward) {}
     virtual ~Pipeline() = default;
     // Runs passes [first, first + count).
     virtual void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) = 0;
     // Dispatches every kernel on nothing: drivers finish compiling at the first dispatch.
     virtual void warm_up(CommandList& commands) = 0;
     RenderSettings settings;
+    ForwardRays* forward;  // null = none
 };
 
 struct Renderer::FusedPipeline : Pipeline {
-    FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const BufferTable& film);
+    FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Techniques& techniques,
+                  ForwardRays* forward, const BufferTable& film);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     Kernel trace_paths;
@@ -24,7 +27,8 @@ struct Renderer::FusedPipeline : Pipeline {
 };
 
 struct Renderer::WavefrontPipeline : Pipeline {
-    WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings, const BufferTable& film,
+    WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings,
+                      const Techniques& techniques, ForwardRays* forward, const BufferTable& film,
                       bool by_class);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;

@@ -12,28 +12,46 @@ namespace {
 
 // Twin of CounterSums in shaders/lib/counters.glsl.
 struct CounterSums {
-    uint32_t counts[4];
-    uint32_t importance[4];  // whole and 1/65536, in pairs
+    uint32_t counts[8];
+    uint32_t flux[14];  // whole and 2^-32, in pairs
+    double flux_sum(int i) const { return double(int32_t(flux[2 * i])) + flux[2 * i + 1] / 4294967296.0; }
 };
+
+// Counters by the names under which a checkpoint keeps them.
+template <class Counters, class Visit>
+void visit_counters(Counters& c, Visit visit) {
+    visit("rays", c.rays);
+    visit("shadow_rays", c.shadow_rays);
+    visit("non_finite", c.non_finite);
+    visit("depth_limit", c.depth_limit);
+    visit("escaped", c.escaped);
+    visit("depth_limit_lost", c.depth_limit_lost);
+    visit("forward_paths", c.forward_paths);
+    visit("forward_rays", c.forward_rays);
+    visit("forward_shadow_rays", c.forward_shadow_rays);
+    visit("forward_non_finite", c.forward_non_finite);
+    visit("forward_depth_limit", c.forward_depth_limit);
+    visit("emitted", c.emitted);
+    visit("absorbed", c.absorbed);
+    visit("forward_escaped", c.forward_escaped);
+    visit("forward_depth_limit_lost", c.forward_depth_limit_lost);
+    visit("roulette", c.roulette);
+}
 
 }  // namespace
 
-nlohmann::json to_json(const RenderCounters& c) {
-    return {{"rays", c.rays},
-            {"shadow_rays", c.shadow_rays},
-            {"non_finite", c.non_finite},
-            {"depth_limit", c.depth_limit},
-            {"escaped", c.escaped},
-            {"depth_limit_lost", c.depth_limit_lost}};
+nlohmann::json to_json(const RenderCounters& counters) {
+    nlohmann::json json;
+    visit_counters(counters, [&](const char* name, auto value) { json[name] = value; });
+    return json;
 }
 
-RenderCounters counters_from_json(const nlohmann::json& j) {
-    return {j.value("rays", uint64_t(0)),
-            j.value("shadow_rays", uint64_t(0)),
-            j.value("non_finite", uint64_t(0)),
-            j.value("depth_limit", uint64_t(0)),
-            j.value("escaped", 0.0),
-            j.value("depth_limit_lost", 0.0)};
+RenderCounters counters_from_json(const nlohmann::json& json) {
+    RenderCounters counters;
+    visit_counters(counters, [&](const char* name, auto& value) {
+        value = json.value(name, std::decay_t<decltype(value)>{});
+    });
+    return counters;
 }
 
 // Measured on lavapipe: while the hierarchy fits in the cache and few classes share a kernel, state in
@@ -55,20 +73,25 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
             settings.binding_bytes ? settings.binding_bytes : device.description.max_buffer_range),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
       commands_(device) {
-    if (settings.algorithm == Algorithm::forward || settings.algorithm == Algorithm::bidirectional)
-        fail_input("--algorithm {}: not available yet; allowed: auto, backward",
-                   algorithm_name(settings.algorithm));
     counter_sums_.fill(0);
     scene.features.film_by_address = film_.by_address();
     BufferTable film = film_.buffers();
     film["CounterSums"] = &counter_sums_;
     if (schedule_ == Schedule::automatic) schedule_ = choose_schedule(scene);
+    const Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
+    if (techniques.forward) {
+        schedule_ = Schedule::fused;
+        forward_ = std::make_unique<ForwardRays>(device, scene, settings_, techniques, film);
+        film.merge(forward_->buffers());
+    }
     if (schedule_ == Schedule::fused)
-        pipeline_ = std::make_unique<FusedPipeline>(device, scene, settings_, film);
+        pipeline_ =
+            std::make_unique<FusedPipeline>(device, scene, settings_, techniques, forward_.get(), film);
     else
-        pipeline_ = std::make_unique<WavefrontPipeline>(device, scene, settings_, film,
-                                                        schedule_ == Schedule::by_class);
+        pipeline_ = std::make_unique<WavefrontPipeline>(device, scene, settings_, techniques, forward_.get(),
+                                                        film, schedule_ == Schedule::by_class);
     const auto start = std::chrono::steady_clock::now();
+    if (forward_) forward_->warm_up(commands_);
     pipeline_->warm_up(commands_);
     warm_up_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -89,6 +112,7 @@ void Renderer::restart(uint32_t seed) {
     settings_.seed = pipeline_->settings.seed = seed;
     film_.clear();
     counter_sums_.fill(0);
+    if (forward_) forward_->restart();
     counters_ = {};
     passes_ = 0;
 }
@@ -105,8 +129,19 @@ void Renderer::read_counters() {
     counters_.shadow_rays += sums.counts[1];
     counters_.non_finite += sums.counts[2];
     counters_.depth_limit += sums.counts[3];
-    counters_.escaped += sums.importance[0] + sums.importance[1] / 65536.0;
-    counters_.depth_limit_lost += sums.importance[2] + sums.importance[3] / 65536.0;
+    counters_.escaped += sums.flux_sum(0);
+    counters_.depth_limit_lost += sums.flux_sum(1);
+    if (!forward_) return;
+    counters_.forward_paths = forward_->paths();
+    counters_.forward_rays += sums.counts[4];
+    counters_.forward_shadow_rays += sums.counts[5];
+    counters_.forward_non_finite += sums.counts[6];
+    counters_.forward_depth_limit += sums.counts[7];
+    counters_.forward_escaped += sums.flux_sum(2);
+    counters_.forward_depth_limit_lost += sums.flux_sum(3);
+    counters_.emitted += sums.flux_sum(4);
+    counters_.absorbed += sums.flux_sum(5);
+    counters_.roulette += sums.flux_sum(6);
 }
 
 void Renderer::add_aovs(Image& image, uint32_t count) {

@@ -17,6 +17,8 @@
 
 namespace etendue {
 
+class ForwardRays;
+
 struct RenderSettings {
     uint32_t width = 512, height = 512;
     uint32_t receiver = no_record;  // RecordRef
@@ -31,6 +33,11 @@ struct RenderSettings {
 struct RenderCounters {
     uint64_t rays = 0, shadow_rays = 0, non_finite = 0, depth_limit = 0;
     double escaped = 0, depth_limit_lost = 0;
+    // Forward paths: their flux in units of the mean, so that each emits about 1.
+    uint64_t forward_paths = 0, forward_rays = 0, forward_shadow_rays = 0, forward_non_finite = 0,
+             forward_depth_limit = 0;
+    double emitted = 0, absorbed = 0, forward_escaped = 0, forward_depth_limit_lost = 0;
+    double roulette = 0;  // what Russian roulette took, less what it gave to the survivors
 };
 nlohmann::json to_json(const RenderCounters& counters);
 RenderCounters counters_from_json(const nlohmann::json& json);
@@ -81,6 +88,7 @@ class Renderer {
     Schedule schedule_;
     Film film_;
     Buffer counter_sums_;
+    std::unique_ptr<ForwardRays> forward_;  // null = none
     std::unique_ptr<Pipeline> pipeline_;
     CommandList commands_;
     KernelTimings timings_;

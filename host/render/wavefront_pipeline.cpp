@@ -13,8 +13,9 @@ constexpr uint32_t cpu_slots = 1 << 16, gpu_slots = 1 << 20;
 }  // namespace
 
 Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& s,
+                                               const Techniques& techniques, ForwardRays* forward,
                                                const BufferTable& film, bool by_class)
-    : Pipeline(s) {
+    : Pipeline(s, forward) {
     const bool cpu = device.description.type == "CPU";
     const uint32_t pixels = settings.width * settings.height;
     const uint32_t wanted = cpu ? cpu_slots : gpu_slots;

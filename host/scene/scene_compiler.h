@@ -15,7 +15,7 @@ struct MaterialRecord {
     float normal_scale;
     uint32_t reserved;
 };
-enum MaterialFlag : uint32_t { emits_both_sides = 1, separates_media = 2, opaque = 4 };
+enum MaterialFlag : uint32_t { emits_both_sides = 1, separates_media = 2, opaque = 4, narrow = 8 };
 
 class SceneCompiler {
   public:

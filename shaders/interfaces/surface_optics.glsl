@@ -77,24 +77,54 @@ BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
     return result;
 }
 
-// All of an event at once: eval and pdf towards a light at wi, and a sample. The class is visited and its textures are read
-// once.
-struct SurfaceEvent {
+// Scattering between two directions: eval, pdf, and the pdf of the way back. The class is visited and its textures are read once.
+struct SurfacePair {
     Spectrum value;
-    float pdf;
-    BsdfSample next;
+    float pdf;          // of wi given wo
+    float pdf_reverse;  // of wo given wi
 };
 
-SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 u) {
-    SurfaceEvent result = SurfaceEvent(Spectrum(0), 0.0, no_bsdf_sample());
+SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
+    SurfacePair result = SurfacePair(Spectrum(0), 0.0, 0.0);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name)                                                 \
     case tag: {                                                                \
         Struct r = name##_resolve(name##_record(record_index(ref)), c);        \
         result.value = name##_eval(r, c, wo, wi);                              \
         result.pdf = name##_pdf(r, c, wo, wi);                                 \
-        result.next = name##_sample(r, c, wo, u);                              \
+        result.pdf_reverse = name##_pdf(r, c, wi, wo);                         \
         break;                                                                 \
+    }
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+// All of an event at once: scattering towards wi, and a sample. The pdfs of the way back only where paths need them.
+struct SurfaceEvent {
+    SurfacePair pair;
+    BsdfSample next;
+    float next_pdf_reverse;
+};
+#if BIDIRECTIONAL
+#define IF_BIDIRECTIONAL(x) x
+#else
+#define IF_BIDIRECTIONAL(x)
+#endif
+
+SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 u) {
+    SurfaceEvent result = SurfaceEvent(SurfacePair(Spectrum(0), 0.0, 0.0), no_bsdf_sample(), 0.0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name)                                                         \
+    case tag: {                                                                        \
+        Struct r = name##_resolve(name##_record(record_index(ref)), c);                \
+        result.pair.value = name##_eval(r, c, wo, wi);                                 \
+        result.pair.pdf = name##_pdf(r, c, wo, wi);                                    \
+        result.next = name##_sample(r, c, wo, u);                                      \
+        IF_BIDIRECTIONAL(result.pair.pdf_reverse = name##_pdf(r, c, wi, wo);           \
+                         result.next_pdf_reverse = name##_pdf(r, c, result.next.wi, wo);) \
+        break;                                                                         \
     }
         SURFACE_CLASSES(CASE)
 #undef CASE

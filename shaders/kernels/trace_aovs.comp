@@ -34,7 +34,7 @@ void main() {
         Hit hit = find_hit(path.origin, path.direction, INFINITY);
         if (hit.primitive == NO_RECORD) continue;
         SurfacePoint p = locate(hit, path.origin, path.direction);
-        ScatteringPoint point = scattering_point(p, path.direction, path.medium, false);
+        ScatteringPoint point = scattering_point(p, path.direction, path.medium);
         BsdfSample b = surface_sample(point.surface, point.context, point.wo, sample_3d(path.random));
         sum.albedo += b.weight;
         sum.normal += point.frame[2];

@@ -18,6 +18,9 @@ layout(push_constant) uniform Push {
 #include "stages/trace_shadow.glsl"
 #include "lib/counters.glsl"
 #include "lib/film.glsl"
+#if HAS_SPLATS
+#include "lib/splats.glsl"
+#endif
 
 void main() {
     uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -36,11 +39,26 @@ void main() {
         counters.rays++;
         Hit hit = find_hit(path.origin, path.direction, INFINITY);
         ShadowRay shadow;
+#if CONNECT_VERTICES
+        ShadowRay vertex_shadow;
+        alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
+        for (uint i = 0u; i < 2u; ++i) {  // a loop, so that the code stands once
+            path.radiance += trace_shadow(shadow, counters);
+            shadow = vertex_shadow;
+        }
+#else
         alive = scatter_path(path, hit, counters, shadow);
         path.radiance += trace_shadow(shadow, counters);
+#endif
         if (!alive) {
-            if (is_finite(path.radiance)) add_sample(sum, path.radiance);
-            else counters.non_finite++, add_sample(sum, vec3(0));
+            if (!is_finite(path.radiance)) {
+                counters.non_finite++;
+                path.radiance = Spectrum(0);
+            }
+#if HAS_SPLATS
+            path.radiance += take_splats(pixel);
+#endif
+            add_sample(sum, path.radiance);
             if (++sample_index == sample_count) {
                 film_at(pixel) = sum;
                 pixel += lanes;

@@ -3,29 +3,49 @@
 #include "lib/path.glsl"
 
 layout(scalar, set = 0) buffer CounterSums {
-    uint count_sums[4];      // rays, shadow rays, non-finite samples, depth limit
-    uint importance_sums[];  // escaped, lost to the depth limit; whole and fraction (1/65536), in pairs
+    uint count_sums[8];  // rays, shadow rays, non-finite samples, depth limit; then the same of forward rays
+    uint flux_sums[];    // in pairs, whole and fraction (2^-32): escaped and lost to the depth limit, of backward rays and of
+                         // forward rays; emitted, absorbed, taken by roulette (these may be negative)
 };
 
-Counters no_counters() { return Counters(0u, 0u, 0u, 0u, 0.0, 0.0); }
+Counters no_counters() {
+    Counters c;
+    c.rays = c.shadow_rays = c.non_finite = c.depth_limit = 0u;
+    c.escaped = c.depth_limit_lost = 0.0;
+#if FORWARD
+    c.emitted = c.absorbed = c.roulette = 0.0;
+#endif
+    return c;
+}
 
-void add_importance(uint slot, float value) {
-    uint whole = uint(value);
-    uint fraction = uint((value - float(whole)) * 65536.0);
-    uint before = atomicAdd(importance_sums[2u * slot + 1u], fraction);
-    if (before + fraction < before) whole += 65536u;  // the sum of fractions has wrapped: carry
-    atomicAdd(importance_sums[2u * slot], whole);
+// Order does not matter: the sums are of integers. Below 2^31 a call.
+void add_flux(uint slot, float value) {
+    float whole = floor(clamp(value, -2e9, 2e9));
+    uint fraction = uint(min((value - whole) * 4294967296.0, 4294967040.0));
+    uint before = atomicAdd(flux_sums[2u * slot + 1u], fraction);
+    uint carry = before + fraction < before ? 1u : 0u;
+    atomicAdd(flux_sums[2u * slot], uint(int(whole)) + carry);
 }
 
 void store_counters(Counters c) {
     uvec4 counts = subgroupAdd(uvec4(c.rays, c.shadow_rays, c.non_finite, c.depth_limit));
-    float escaped = subgroupAdd(c.escaped);
-    float lost = subgroupAdd(c.depth_limit_lost);
+    vec2 lost = subgroupAdd(vec2(c.escaped, c.depth_limit_lost));
+#if FORWARD
+    const uint first = 1u;
+    vec3 forward = subgroupAdd(vec3(c.emitted, c.absorbed, c.roulette));
+#else
+    const uint first = 0u;
+#endif
     if (subgroupElect()) {
         for (uint i = 0u; i < 4u; ++i)
-            if (counts[i] != 0u) atomicAdd(count_sums[i], counts[i]);
-        if (escaped > 0.0) add_importance(0u, min(escaped, 4e9));
-        if (lost > 0.0) add_importance(1u, min(lost, 4e9));
+            if (counts[i] != 0u) atomicAdd(count_sums[4u * first + i], counts[i]);
+        add_flux(2u * first, lost.x);
+        add_flux(2u * first + 1u, lost.y);
+#if FORWARD
+        add_flux(4u, forward.x);
+        add_flux(5u, forward.y);
+        add_flux(6u, forward.z);
+#endif
     }
 }
 

@@ -19,6 +19,7 @@ struct Material {
 const uint MATERIAL_EMITS_BOTH_SIDES = 1u;
 const uint MATERIAL_SEPARATES_MEDIA = 2u;  // inside and outside hold; without it a ray that passes stays where it is
 const uint MATERIAL_OPAQUE = 4u;           // nothing passes straight on
+const uint MATERIAL_NARROW = 8u;           // scatters into narrow lobes: perfectly smooth or nearly so, in part at least
 
 layout(scalar, set = 0) readonly buffer Materials { Material materials[]; };
 

@@ -1,4 +1,11 @@
-// The state of a backward path between two events, and what every stage counts.
+// The state of a path between two events, and what every stage counts.
+//
+// What a kernel traces is set by the host before its source:
+//   FORWARD           paths start at a light and carry flux instead of radiance
+//   BIDIRECTIONAL     estimators from both ends are combined (lib/mis.glsl)
+//   CONNECT_VERTICES  … also by connecting vertices of backward paths with vertices of forward paths
+//   MERGE_VERTICES    … also by merging them
+//   FORWARD_ONLY      what forward rays can bring is brought by nothing else
 #include "lib/records.glsl"
 #include "lib/sampler.glsl"
 #include "lib/spectrum.glsl"
@@ -6,14 +13,36 @@
 struct Path {
     vec3 origin;          // of the ray to trace next
     vec3 direction;       // unit
-    Spectrum throughput;  // what a unit of radiance along the ray contributes to the pixel
+    Spectrum throughput;  // backward: what a unit of radiance along the ray contributes to the pixel; forward: flux that the ray
+                          // carries, in units of the mean of all forward paths
     Spectrum radiance;    // collected so far
     vec3 reference;       // point where the direction was chosen
     float pdf;            // of choosing the direction there, 1/sr; 0 = one of finitely many (delta, camera)
     uint medium;          // RecordRef of the medium the ray is in
     uint depth;           // events so far
     Sampler random;
+#if BIDIRECTIONAL
+    float vcm, vc;        // lib/mis.glsl
+    float pending;        // backward: what merging at the last event adds to vc if the next one is at a narrow surface
+#if FORWARD
+    uint light;           // where the path started
+    vec3 light_normal;    // of its surface there
+#endif
+#endif
+#if BIDIRECTIONAL || FORWARD_ONLY
+    uint flags;           // PATH_…
+#endif
+#if FORWARD
+    uvec2 vertices;       // the last one stored of this path, and how many
+#endif
+#if MERGE_VERTICES
+    Spectrum bias;        // difference of merging with two radii, for the estimate of its bias
+#endif
 };
+
+const uint PATH_STARTS = 1u;        // no event yet but passing straight on
+const uint PATH_PARALLEL = 2u;      // started by a receiver of parallel rays
+const uint PATH_AFTER_NARROW = 4u;  // the last event was at a narrow surface
 
 // A ray that brings `contribution` to the pixel unless something stands in its way.
 struct ShadowRay {
@@ -22,9 +51,19 @@ struct ShadowRay {
     float t_max;            // 0 = no ray
     Spectrum contribution;
     uint medium;
+#if FORWARD
+    uint pixel;             // that it contributes to
+#endif
 };
 
-ShadowRay no_shadow_ray() { return ShadowRay(vec3(0), vec3(0, 0, 1), 0.0, Spectrum(0), NO_RECORD); }
+ShadowRay no_shadow_ray() {
+    ShadowRay ray;
+    ray.origin = vec3(0), ray.direction = vec3(0, 0, 1), ray.t_max = 0.0, ray.contribution = Spectrum(0), ray.medium = NO_RECORD;
+#if FORWARD
+    ray.pixel = 0u;
+#endif
+    return ray;
+}
 
 // A path of more events than this is cut, and what it carried is reported as lost: only a closed scene that absorbs
 // nothing gets there (Russian roulette lets a path live for 65536 events with probability 1e-1400).
@@ -35,6 +74,11 @@ struct Counters {
     uint shadow_rays;
     uint non_finite;          // samples dropped: not a number, or infinite
     uint depth_limit;         // paths cut at MAX_DEPTH
-    float escaped;            // importance (1 a path) that left the scene
-    float depth_limit_lost;   // importance of the paths cut
+    float escaped;            // importance (1 a backward path) or flux (about 1 a forward path) that left the scene
+    float depth_limit_lost;   // of the paths cut
+#if FORWARD
+    float emitted;            // flux
+    float absorbed;
+    float roulette;           // taken by Russian roulette, less what it gave to the survivors
+#endif
 };

@@ -52,6 +52,11 @@ Sampler start_sampler(uvec2 pixel, uint sample_index, uint seed) {
     return Sampler(sample_index, hash_3d(uvec3(pixel, seed)).x, 0u);
 }
 
+// For the path `index` of the `count` forward paths of a pass: all paths of all passes share one sequence.
+Sampler start_forward_sampler(uint pass, uint index, uint count, uint seed) {
+    return Sampler((pass >> 1) * count + index, hash_3d(uvec3(~0u, pass & 1u, seed)).x, 0u);
+}
+
 vec2 sample_2d(inout Sampler s) {
     uvec3 seeds = hash_3d(uvec3(s.pixel_hash, s.dimension, 0u));
     s.dimension++;

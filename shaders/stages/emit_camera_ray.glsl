@@ -1,6 +1,9 @@
 // Starts a backward path: a point of the pixel (box filter), the receiver's ray through it.
 #include "interfaces/receiver.glsl"
 #include "lib/path.glsl"
+#if BIDIRECTIONAL
+#include "lib/forward_pass.glsl"
+#endif
 
 Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, uint seed) {
     Path path;
@@ -15,5 +18,16 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.pdf = 0.0;
     path.medium = NO_RECORD;
     path.depth = 0u;
+#if BIDIRECTIONAL
+    path.vcm = float(forward_pass.count) * ray.connect_pdf / (ray.density * float(size.x) * float(size.y));
+    path.vc = 0.0;
+    path.pending = 0.0;
+#endif
+#if BIDIRECTIONAL || FORWARD_ONLY
+    path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
+#endif
+#if MERGE_VERTICES
+    path.bias = Spectrum(0);
+#endif
     return path;
 }

@@ -24,7 +24,7 @@ Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
         if (!met) return left;
         SurfacePoint p = locate(hit, shadow.origin, shadow.direction);
         if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
-        ScatteringPoint s = scattering_point(p, shadow.direction, shadow.medium, false);
+        ScatteringPoint s = scattering_point(p, shadow.direction, shadow.medium);
         left *= surface_transparency(s.surface, s.context, s.wo);
         if (is_black(left)) return Spectrum(0);
         vec3 origin = offset_origin(p.position, p.error, p.geometric_normal, shadow.direction);

@@ -1,0 +1,107 @@
+#include "host/render/forward_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace etendue {
+namespace {
+
+// Twin of struct ForwardPass in shaders/lib/forward_pass.glsl.
+struct ForwardPass {
+    uint32_t receiver, width, height, pass, seed, count;
+    float merge_scale, path_flux, inverse_power, splat_unit;
+};
+
+constexpr double first_radius_pixels = 1.0;  // radius of merging in the first pass, in widths of a pixel
+constexpr uint32_t vertices_a_path = 16;       // for which room is kept, if there is as much
+
+}  // namespace
+
+double merge_radius_factor(uint64_t pass) {
+    constexpr double alpha = 2.0 / 3.0;
+    const double i = double(pass) + 1;
+    return std::exp(0.5 * (std::lgamma(i + alpha) - std::lgamma(1 + alpha) - std::lgamma(i + 1)));
+}
+
+ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& settings,
+                         const Techniques& techniques, const BufferTable& film)
+    : settings_(settings),
+      techniques_(techniques),
+      power_(scene.power),
+      radius_(scene.radius),
+      count_(settings.width * settings.height),
+      pass_(device, sizeof(ForwardPass), "ForwardPassTable"),
+      splats_(device, uint64_t(settings.width) * settings.height * 24, "Splats") {
+    splats_.fill(0);
+    if (techniques.connect || techniques.merge) {
+        const auto make = [&](const std::string& file, const BufferTable& table, const std::string& defines) {
+            return make_kernel(device, scene, file, table, defines);
+        };
+        const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex;
+        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, 1, uint64_t(count_) * vertices_a_path)),
+                          make, settings.binding_bytes);
+        path_ends_ = Buffer(device, uint64_t(count_) * 8, "PathEnds");
+    }
+    BufferTable table = buffers();
+    table.insert(film.begin(), film.end());
+    trace_forward_paths_ = make_kernel(device, scene, "kernels/trace_forward_paths.comp", table,
+                                       techniques.forward_defines() + defines());
+    const uint32_t a_group = trace_forward_paths_.group_size() * (device.description.type == "CPU" ? 8 : 1);
+    groups_ = std::clamp((count_ + a_group - 1) / a_group, 1u, max_groups);
+}
+
+BufferTable ForwardRays::buffers() const {
+    BufferTable table = {{"ForwardPassTable", &pass_}, {"Splats", &splats_}};
+    if (vertices_) table.merge(vertices_->buffers());
+    table["PathEnds"] = &path_ends_;
+    return table;
+}
+
+void ForwardRays::write_pass(uint64_t pass, uint32_t seed) {
+    const double pixels = double(settings_.width) * settings_.height;
+    ForwardPass values{};
+    values.receiver = settings_.receiver;
+    values.width = settings_.width, values.height = settings_.height;
+    values.pass = uint32_t(pass);
+    values.seed = seed + count_ * 0x9E3779B9u;  // other counts take other sequences
+    values.count = count_;
+    values.merge_scale = float(first_radius_pixels * merge_radius_factor(pass) / std::sqrt(pixels));
+    values.path_flux = float(power_ / count_);
+    values.inverse_power = float(1 / power_);
+    values.splat_unit = float(power_ / (4 * std::pow(std::numbers::pi * radius_, 2)));
+    pass_.write(&values, sizeof values);
+}
+
+void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings) {
+    while (true) {
+        write_pass(pass, seed);
+        if (vertices_) vertices_->clear(commands);
+        commands.dispatch(trace_forward_paths_, groups_);
+        commands.run(&timings);
+        paths_ += count_;
+        if (!vertices_) return;
+        const VertexMap::Counts counts = vertices_->counts();
+        expected_vertices_ = counts.stored;
+        if (counts.wanted == counts.stored) break;
+        count_ = std::max(1u, uint32_t(0.9 * count_ * counts.stored / counts.wanted));
+        splats_.fill(0);
+    }
+    if (techniques_.merge && expected_vertices_ > 0) vertices_->build(commands, expected_vertices_);
+}
+
+void ForwardRays::restart() {
+    splats_.fill(0);
+    paths_ = 0;
+}
+
+void ForwardRays::warm_up(CommandList& commands) {
+    const ForwardPass nothing{};
+    pass_.write(&nothing, sizeof nothing);
+    if (vertices_) vertices_->clear(commands);
+    commands.dispatch(trace_forward_paths_, 1);
+    if (vertices_) vertices_->build(commands, 1);
+    commands.run();
+}
+
+}  // namespace etendue

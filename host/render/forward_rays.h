@@ -1,0 +1,45 @@
+// Forward rays of a pass: paths from the light sources, what they bring straight to the pixels, and the vertices that
+// backward paths connect to and merge with.
+#pragma once
+#include <optional>
+
+#include "host/render/renderer.h"
+#include "host/render/techniques.h"
+#include "host/render/vertex_map.h"
+
+namespace etendue {
+
+// Radius of merging in pass `pass` (0, 1, …) relative to that of the first: squared, it falls as pass^(alpha - 1) with
+// alpha = 2/3 (Knaus & Zwicker 2011, eq. 13), so that bias and variance both vanish.
+double merge_radius_factor(uint64_t pass);
+
+class ForwardRays {
+  public:
+    ForwardRays(Device& device, Scene& scene, const RenderSettings& settings, const Techniques& techniques,
+                const BufferTable& film);
+    // What kernels of backward rays share.
+    BufferTable buffers() const;
+    std::string defines() const { return vertices_ ? vertices_->defines() : ""; }
+    // Traces the forward paths of a pass and sorts their vertices. Where the vertices do not fit, the pass is
+    // repeated with fewer paths, and so are all that follow.
+    void trace(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings);
+    void warm_up(CommandList& commands);
+    uint64_t paths() const { return paths_; }  // traced so far
+    void restart();
+
+  private:
+    void write_pass(uint64_t pass, uint32_t seed);
+    RenderSettings settings_;
+    Techniques techniques_;
+    double power_;   // of all lights, lm
+    float radius_;   // m, of the scene
+    uint32_t count_;  // forward paths a pass
+    uint64_t paths_ = 0;
+    uint32_t expected_vertices_ = 0;
+    Buffer pass_, splats_, path_ends_;
+    std::optional<VertexMap> vertices_;  // where vertices are connected or merged
+    Kernel trace_forward_paths_;
+    uint32_t groups_ = 1;
+};
+
+}  // namespace etendue

@@ -1,0 +1,25 @@
+// Which estimators a scene is rendered with.
+#pragma once
+#include <string>
+
+#include "host/render/modes.h"
+#include "host/scene/scene.h"
+
+namespace etendue {
+
+// The estimators of a pass; as macros they stand before every kernel (shaders/lib/path.glsl).
+struct Techniques {
+    bool forward = false;        // there are forward rays
+    bool bidirectional = false;  // backward and forward rays are weighted against each other
+    bool connect = false;        // vertices are connected
+    bool merge = false;          // vertices are merged
+    std::string backward_defines() const, forward_defines() const;
+};
+
+// Marks the materials that scatter into narrow lobes (asked of the classes on the device); returns whether there are any.
+bool find_narrow_materials(Device& device, Scene& scene);
+
+// Vertices merge only behind narrow surfaces; a scene without light is left to backward rays.
+Techniques choose_techniques(Device& device, Scene& scene, Algorithm algorithm);
+
+}  // namespace etendue

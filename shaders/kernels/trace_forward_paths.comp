@@ -1,0 +1,42 @@
+// Whole forward paths in one kernel, as trace_paths does it for backward ones.
+// Reads: scene. Writes: splats, forward vertices, counters. Barrier expected: after the dispatch.
+layout(local_size_x = 64) in;
+
+#include "stages/emit_light_ray.glsl"
+#include "stages/scatter_forward_path.glsl"
+#include "stages/trace_shadow.glsl"
+#include "lib/counters.glsl"
+#include "lib/splats.glsl"
+#if CONNECT_VERTICES
+layout(scalar, set = 0) writeonly buffer PathEnds { uvec2 path_ends[]; };  // per path: last stored vertex, their number
+#endif
+
+void main() {
+    uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint index = scattered_lane();
+    Counters counters = no_counters();
+    Path path;
+    bool alive = false;
+    while (index < forward_pass.count) {
+        if (!alive) {
+            path = emit_light_ray(index);
+            counters.emitted += luminance(path.throughput);
+            alive = !is_black(path.throughput);
+        }
+        if (alive) {
+            counters.rays++;
+            Hit hit = find_hit(path.origin, path.direction, INFINITY);
+            ShadowRay shadow;
+            alive = scatter_forward_path(path, hit, index, counters, shadow);
+            Spectrum brought = trace_shadow(shadow, counters);
+            if (!is_black(brought) && !add_splat(shadow.pixel, brought)) counters.non_finite++;
+        }
+        if (!alive) {
+#if CONNECT_VERTICES
+            path_ends[index] = path.vertices;
+#endif
+            index += lanes;
+        }
+    }
+    store_counters(counters);
+}

@@ -1,0 +1,84 @@
+// What befalls a path at a surface, whichever way it goes.
+#include "lib/mis.glsl"
+
+// The end of a ray towards a sampled point of a light lies short of the light by the rounding error of both points, so
+// that the light does not hide itself while anything a hair in front of it still does.
+float shadow_t_max(vec3 origin, float distance) {
+    vec3 a = abs(origin);
+    return distance * (1.0 - 8.0 * EPSILON) - 32.0 * EPSILON * (max(a.x, max(a.y, a.z)) + distance);
+}
+
+// A ray from p that ends short of what lies at `distance` along `direction`.
+ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float distance, Spectrum contribution) {
+    ShadowRay shadow = no_shadow_ray();
+    shadow.contribution = contribution;
+    shadow.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
+    shadow.direction = direction;
+    shadow.t_max = distance >= INFINITY ? INFINITY : max(0.0, shadow_t_max(shadow.origin, distance));
+    shadow.medium = scattering_medium(s, direction);
+    return shadow;
+}
+
+// The path goes on along the sampled direction. False: it is absorbed.
+bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEvent event, VertexMis mis) {
+    BsdfSample b = event.next;
+    if (b.event == EVENT_NONE || is_black(b.weight)) return false;
+    bool straight = (b.event & EVENT_STRAIGHT) != 0u;
+    vec3 direction = straight ? path.direction : normalize(s.frame * b.wi);
+    // A direction that the shading frame puts on one side of the surface and the surface on the other carries nothing.
+    if (!straight && dot(direction, s.normal) * b.wi.z <= 0.0) return false;
+#if FORWARD
+    if (!straight) {
+        float probability = frame_probability(s, -path.direction, direction);
+        if (!is_seen_from(s, direction) || !(probability > 0.0)) return false;
+        path.throughput *= adjoint_correction(s, -path.direction, direction) / probability;
+        if ((b.event & EVENT_DELTA) == 0u) b.pdf *= probability;
+    }
+#endif
+    path.throughput *= b.weight;
+    if (!straight) {
+        // What goes straight on stays a candidate for light sampling at the event before.
+#if BIDIRECTIONAL
+#if !FORWARD
+        event.next_pdf_reverse *= frame_probability(s, direction, -path.direction);
+#endif
+        update_mis(path, mis, s.material, b, event.next_pdf_reverse, abs(dot(direction, s.normal)));
+#endif
+        path.pdf = (b.event & EVENT_DELTA) != 0u ? 0.0 : b.pdf;
+        path.reference = p.position;
+    }
+    path.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
+    path.direction = direction;
+    path.medium = scattering_medium(s, direction);
+    return true;
+}
+
+// Russian roulette on what the path still carries. Radiance that has entered a dense medium is scaled by 1 / ior² until it
+// leaves, which is no reason to end the path.
+bool survive_roulette(inout Path path) {
+    if (path.depth < 3u) return true;
+    float carried = max_component(path.throughput);
+#if HAS_INTERFACES && !FORWARD
+    float ior = medium_ior(path.medium);
+    carried *= ior * ior;
+#endif
+    float q = min(carried, path.depth < 64u ? 1.0 : 0.95);
+    if (q >= 1.0) return true;
+    if (sample_1d(path.random) >= q) return false;
+    path.throughput *= 1.0 / q;
+    return true;
+}
+
+// After an event: does the path live on?
+bool continue_path(inout Path path, inout Counters counters) {
+    float carried = luminance(path.throughput);
+    bool survives = survive_roulette(path);
+#if FORWARD
+    counters.roulette += carried - (survives ? luminance(path.throughput) : 0.0);
+#endif
+    if (!survives) return false;
+    if (++path.depth < MAX_DEPTH) return true;
+    counters.depth_limit++;
+    counters.depth_limit_lost += luminance(path.throughput);
+    return false;
+}

@@ -1,0 +1,14 @@
+// What forward rays need to know of the pass that they belong to, and backward ones that meet them. Twin: struct ForwardPass of
+// host/render/forward_rays.h.
+struct ForwardPass {
+    uint receiver;        // RecordRef
+    uint width, height;   // of its image
+    uint pass;
+    uint seed;
+    uint count;           // forward paths
+    float merge_scale;    // radius of merging, in widths of what the film covers there
+    float path_flux;      // power of all lights / count, lm
+    float inverse_power;  // 1 / power of all lights
+    float splat_unit;     // cd/m², about the mean radiance of the scene
+};
+layout(scalar, set = 0) readonly buffer ForwardPassTable { ForwardPass forward_pass; };

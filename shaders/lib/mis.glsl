@@ -1,0 +1,101 @@
+// Multiple importance sampling over all ways to make a path: emission hit by a backward ray, light sampling, connection to
+// the receiver, connection of vertices, merging of vertices. Balance heuristic in the recursive form of vertex connection
+// and merging (Georgiev et al. 2012; Georgiev 2012, "Implementing Vertex Connection and Merging", eqs. 29 to 40).
+//
+// Differences from that report:
+// - Densities of rays are per étendue (area perpendicular to the ray times solid angle), so lights and receivers near
+//   and far, points and surfaces need no cases of their own.
+// - Which light a point samples depends on the point, so a forward path learns the density of that only at its first hit.
+// - Merging happens only at vertices that light reaches from a narrow surface (MATERIAL_NARROW): everything else is
+//   sampled well enough without. Walking backward, a vertex learns that one event later (Path.pending).
+// - The merging radius varies over space, so vc is kept without a twin in units of merging (dVM = dVC / density there).
+#include "interfaces/light_source.glsl"
+#include "interfaces/receiver.glsl"
+#if FORWARD || BIDIRECTIONAL
+#include "lib/forward_pass.glsl"
+#include "lib/light_emission.glsl"
+#endif
+#include "lib/light_selection.glsl"
+#include "lib/path.glsl"
+#include "lib/scattering.glsl"
+
+#if FORWARD || BIDIRECTIONAL
+float film_aspect() { return float(forward_pass.width) / float(forward_pass.height); }
+float pixel_count() { return float(forward_pass.width) * float(forward_pass.height); }
+#endif
+
+// The quantities of a path at its newest vertex, per area there.
+struct VertexMis {
+    float vcm;
+    float vc;
+    float merging;  // pi r² times the number of forward paths; forward: 0 where merging is not possible
+};
+
+#if !BIDIRECTIONAL
+VertexMis vertex_mis(Path path, SurfacePoint p) { return VertexMis(0.0, 0.0, 0.0); }
+#else
+#if MERGE_VERTICES
+float merge_radius(vec3 position) { return forward_pass.merge_scale * receiver_footprint(forward_pass.receiver, position, film_aspect()); }
+float merge_density(vec3 position) { return PI * square(merge_radius(position)) * float(forward_pass.count); }
+#else
+float merge_density(vec3 position) { return 0.0; }
+#endif
+
+bool is_narrow(uint material) { return (materials[material].flags & MATERIAL_NARROW) != 0u; }
+
+// Vertices are connected with one of several of a forward path: that counts as so much of a connection to each. (Any number is
+// right; about 1 / vertices of a path is best.)
+const float CONNECTION_SHARE = CONNECT_VERTICES == 1 ? 0.3 : 0.0;
+
+// How often the newest vertex is connected to from the other side: the first of a path always, by sampling lights or connecting to
+// the receiver.
+float connects(Path path) { return (path.flags & PATH_STARTS) != 0u ? 1.0 : CONNECTION_SHARE; }
+
+const uint VERTEX_STARTS = 0x20000000u;  // flag of a light vertex: the first of its path
+
+#if FORWARD
+// At the first vertex: the density with which it would sample the path's light the way the path came.
+float start_connection_pdf(Path path, vec3 position) {
+    LightHit hit = LightHit(path.reference, path.light_normal, vec2(0), vec2(0));
+    return light_pdf_towards(lights[path.light], position, -path.direction, hit) *
+           light_selection_probability(path.light, position);
+}
+#endif
+
+VertexMis vertex_mis(Path path, SurfacePoint p) {
+    VertexMis m;
+    float to_area = 1.0 / abs(dot(path.direction, p.geometric_normal));
+    bool starts = (path.flags & PATH_STARTS) != 0u;
+    vec3 d = p.position - path.reference;
+    float distance_squared = dot(d, d);
+#if FORWARD
+    m.vcm = path.vcm * to_area * (starts ? start_connection_pdf(path, p.position) : distance_squared);
+    m.vc = path.vc * to_area;
+    m.merging = (path.flags & PATH_AFTER_NARROW) != 0u ? merge_density(p.position) : 0.0;
+#else
+    m.vcm = path.vcm * to_area * (starts && (path.flags & PATH_PARALLEL) != 0u ? 1.0 : distance_squared);
+    m.vc = (path.vc + (is_narrow(p.material) ? path.pending : 0.0)) * to_area;
+    m.merging = merge_density(p.position);
+#endif
+    return m;
+}
+
+// After an event that was no straight passage, with the pdf of the way back.
+void update_mis(inout Path path, VertexMis m, uint material, BsdfSample b, float pdf_reverse, float cosine) {
+    if ((b.event & EVENT_DELTA) != 0u) {
+        path.vcm = 0.0;
+        path.vc = m.vc * cosine;
+        path.pending = 0.0;
+    } else {
+        float ratio = cosine / b.pdf;
+        path.vc = ratio * (m.vc * pdf_reverse + connects(path) * m.vcm);
+        path.pending = ratio * m.merging;
+#if FORWARD
+        path.vc += path.pending;
+#endif
+        path.vcm = 1.0 / b.pdf;
+    }
+    path.flags &= ~(PATH_STARTS | PATH_PARALLEL | PATH_AFTER_NARROW);
+    if (is_narrow(material)) path.flags |= PATH_AFTER_NARROW;
+}
+#endif

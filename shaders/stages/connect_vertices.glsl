@@ -1,0 +1,49 @@
+// Connects a vertex of a backward path with one vertex of a forward path of the same pass, both drawn uniformly.
+#include "lib/events.glsl"
+#include "lib/light_vertices.glsl"
+
+layout(scalar, set = 0) readonly buffer PathEnds { uvec2 path_ends[]; };  // per forward path: last stored vertex, their number
+
+ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis) {
+    vec2 u = sample_2d(path.random);
+    uvec2 end = path_ends[min(uint(u.x * float(forward_pass.count)), forward_pass.count - 1u)];
+    if (end.y == 0u) return no_shadow_ray();
+    uint index = end.x;
+    for (uint steps = min(uint(u.y * float(end.y)), end.y - 1u); steps > 0u; --steps)
+        index = light_vertex_at(index).previous & ~LIGHT_VERTEX_FLAGS;
+    LightVertex y = light_vertex_at(index);
+
+    vec3 d = y.position - p.position;
+    float distance_squared = dot(d, d);
+    if (!(distance_squared > 0.0)) return no_shadow_ray();
+    float distance = sqrt(distance_squared);
+    vec3 direction = d / distance;
+    vec3 wi = direction * s.frame;
+    if (wi.z * dot(direction, s.normal) <= 0.0) return no_shadow_ray();
+    SurfacePair here = surface_pair(s.surface, s.context, s.wo, wi);
+    if (is_black(here.value)) return no_shadow_ray();
+
+    vec3 light_direction = decode_octahedral(y.direction);
+    SurfacePoint q = locate(Hit(0.0, y.uv, y.primitive, y.instance), y.position, -light_direction);
+    ScatteringPoint there = shaded_point(q, -light_direction, scattering_medium(s, direction), true);
+    if (!is_consistent(there, -direction)) flatten(there, -light_direction);
+    float frame = frame_probability(there, light_direction, -direction);
+    if (!(frame > 0.0)) return no_shadow_ray();
+    SurfacePair away = surface_pair(there.surface, there.context, there.wo, -direction * there.frame);
+
+    float cos_here = abs(dot(direction, s.normal)), cos_there = abs(dot(direction, there.normal));
+    float towards_there = here.pdf * cos_there / distance_squared;
+    float towards_here = away.pdf * frame * cos_here / distance_squared;
+    float reverse = here.pdf_reverse * frame_probability(s, direction, -path.direction);
+    float merging_there = (y.previous & LIGHT_VERTEX_MERGES) != 0u ? merge_density(y.position) : 0.0;
+    float merging_here = is_narrow(there.material) ? mis.merging : 0.0;
+    float connects_there = (y.previous & VERTEX_STARTS) != 0u ? 1.0 : CONNECTION_SHARE;
+    float by_backward = towards_there * (merging_there + connects_there * y.vcm + away.pdf_reverse * y.vc);
+    float by_forward = towards_here * (merging_here + connects(path) * mis.vcm + reverse * mis.vc);
+    float weight = CONNECTION_SHARE / (CONNECTION_SHARE + by_backward + by_forward);
+
+    Spectrum contribution = path.throughput * here.value * y.throughput * away.value *
+                            (adjoint_correction(there, light_direction, -direction) * weight * float(end.y) * forward_pass.path_flux *
+                             float(forward_pass.count) / distance_squared);
+    return shadow_ray(p, s, direction, distance, contribution);
+}

@@ -1,0 +1,37 @@
+// Merges a vertex of a backward path with the forward vertices around it: the flux that they bring per area is the
+// irradiance (Jensen 1996), weighted against the other ways to make the paths (Georgiev et al. 2012).
+//
+// Only vertices of the same surface count: their normals agree within 45 degrees and they lie nearer to the plane of the
+// vertex than half the radius. On planes and spheres the area within the radius is exactly pi r².
+//
+// The estimate is that of a box kernel, whose bias grows with r². The difference to the estimate with radius r / sqrt(2),
+// from the same vertices, is half that bias: it is kept beside the image.
+#include "lib/events.glsl"
+#include "lib/vertex_grid.glsl"
+
+void merge_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis) {
+    float radius = merge_radius(p.position);
+    Spectrum inner = Spectrum(0), outer = Spectrum(0);
+    GridQuery query;
+    begin_query(query, p.position, radius);
+    uint index;
+    vec3 position;
+    while (next_candidate(query, index, position)) {
+        LightVertex y = light_vertex_at(index);
+        vec3 light_direction = decode_octahedral(y.direction);
+        vec3 d = y.position - p.position;
+        float cosine = dot(light_direction, s.normal);
+        vec3 wi = light_direction * s.frame;
+        bool same_surface = dot(decode_octahedral_16(y.normal), s.normal) > 0.7 && abs(dot(d, s.normal)) < 0.5 * radius;
+        if (!same_surface || cosine * wi.z <= 0.0) continue;
+        SurfacePair pair = surface_pair(s.surface, s.context, s.wo, wi);
+        float reverse = pair.pdf_reverse * frame_probability(s, light_direction, -path.direction);
+        float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
+        Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));
+        if (2.0 * dot(d, d) < square(radius)) inner += brought;
+        else outer += brought;
+    }
+    Spectrum scale = path.throughput * (forward_pass.path_flux / (PI * square(radius)));
+    path.radiance += scale * (inner + outer);
+    path.bias += scale * (outer - inner);
+}

@@ -1,0 +1,63 @@
+// One event of a forward path: what the ray meets is crossed, connected to the receiver, stored, and scattered from.
+#include "lib/events.glsl"
+#include "lib/traversal.glsl"
+#if CONNECT_VERTICES || MERGE_VERTICES
+#include "stages/store_vertex.glsl"
+#endif
+
+// The ray that brings light from the point to the receiver.
+ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, ReceiverSample r, SurfacePair pair, VertexMis mis) {
+    float frame = frame_probability(s, -path.direction, r.direction);
+    if (is_black(pair.value) || !is_seen_from(s, r.direction) || !(frame > 0.0)) return no_shadow_ray();
+    float importance = r.density * pixel_count() / r.pdf;  // of one pixel
+    float weight = 1.0;
+#if BIDIRECTIONAL
+    float backward = importance * abs(dot(r.direction, s.normal)) / float(forward_pass.count);
+    weight = 1.0 / (1.0 + backward * (mis.merging + connects(path) * mis.vcm + pair.pdf_reverse * mis.vc));
+#endif
+    Spectrum contribution = path.throughput * pair.value *
+                            (adjoint_correction(s, -path.direction, r.direction) / frame * importance * forward_pass.path_flux * weight);
+    ShadowRay shadow = shadow_ray(p, s, r.direction, r.distance, contribution);
+    uvec2 size = uvec2(forward_pass.width, forward_pass.height);
+    uvec2 pixel = min(uvec2(r.film * vec2(size)), size - 1u);
+    shadow.pixel = pixel.y * size.x + pixel.x;
+    return shadow;
+}
+
+// Returns whether the path goes on; the shadow ray is to be traced in either case.
+bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Counters counters, out ShadowRay shadow) {
+    shadow = no_shadow_ray();
+    float carried = luminance(path.throughput);
+    // cross_media
+#if HAS_MEDIA
+    if (path.medium != NO_RECORD) path.throughput *= medium_transmittance(path.medium, hit.t);
+#endif
+    if (hit.primitive == NO_RECORD) {
+        float left = luminance(path.throughput);
+        counters.absorbed += carried - left;
+        counters.escaped += left;
+        return false;
+    }
+    SurfacePoint p = locate(hit, path.origin, path.direction);
+    ScatteringPoint s = shaded_point(p, path.direction, path.medium, true);
+    float flat_part = flat_probability(s, -path.direction);
+    if (flat_part > 0.0 && (flat_part >= 1.0 || sample_1d(path.random) < flat_part)) flatten(s, path.direction);
+    bool is_delta = surface_is_delta(s.surface, s.context);
+    VertexMis mis = vertex_mis(path, p);
+#if CONNECT_VERTICES || MERGE_VERTICES
+    if (!is_delta) store_vertex(path, path_index, p, hit, mis);
+#endif
+    // connect_receiver, scatter_surfaces
+    ReceiverSample r = ReceiverSample(vec3(0, 0, 1), 0.0, vec2(0), 0.0, 0.0);
+    if (!is_delta) r = receiver_connect(forward_pass.receiver, p.position, sample_2d(path.random), film_aspect());
+    vec3 wi = r.direction * s.frame;
+    SurfaceEvent event = surface_event(s.surface, s.context, s.wo, wi, sample_3d(path.random));
+    if (r.pdf > 0.0 && wi.z * dot(r.direction, s.normal) > 0.0)
+        shadow = connect_receiver(path, p, s, r, event.pair, mis);
+    if (!follow_sample(path, p, s, event, mis)) {
+        counters.absorbed += carried;
+        return false;
+    }
+    counters.absorbed += carried - luminance(path.throughput);
+    return continue_path(path, counters);
+}

@@ -1,0 +1,28 @@
+// Keeps a vertex of a forward path for the backward paths of the same pass.
+#include "lib/events.glsl"
+#include "lib/vertex_grid.glsl"
+
+void store_vertex(inout Path path, uint path_index, SurfacePoint p, Hit hit, VertexMis mis) {
+    bool merges = MERGE_VERTICES == 1 && (path.flags & PATH_AFTER_NARROW) != 0u;
+#if !CONNECT_VERTICES
+    if (!merges) return;
+#endif
+    LightVertex v;
+    v.position = p.position;
+    v.vcm = mis.vcm;
+    v.throughput = path.throughput;
+    v.vc = mis.vc;
+    v.direction = encode_octahedral(-path.direction);
+    v.normal = encode_octahedral_16(p.geometric_normal);
+    v.instance = hit.instance;
+    v.uv = hit.uv;
+    v.primitive = hit.primitive;
+    uint starts = (path.flags & PATH_STARTS) != 0u ? VERTEX_STARTS : 0u;
+    v.previous = light_vertex_link(path.vertices.x, starts | (merges ? LIGHT_VERTEX_MERGES : 0u));
+    uint place = append_light_vertex(v);
+    if (place == NO_LIGHT_VERTEX) return;  // the host repeats the pass with fewer paths
+#if MERGE_VERTICES
+    if (merges) enter_grid(place, p.position, merge_radius(p.position), path_index * 64u + min(path.vertices.y, 63u));
+#endif
+    path.vertices = uvec2(place, path.vertices.y + 1u);
+}
