@@ -9,10 +9,10 @@ layout(scalar, set = 0) readonly buffer LargeBuckets { uint large_buckets[]; };
 
 void order_pair(uint first, uint a, uint b, uint count) {
     if (b >= count) return;
-    GridItem low = grid_items[first + a], high = grid_items[first + b];
-    if (low.key <= high.key) return;
-    grid_items[first + a] = high;
-    grid_items[first + b] = low;
+    if (grid_items[first + a].key <= grid_items[first + b].key) return;
+    GridItem low = grid_items[first + b];
+    grid_items[first + b] = grid_items[first + a];
+    grid_items[first + a] = low;
 }
 
 void main() {
@@ -24,7 +24,7 @@ void main() {
         for (uint size = 2u; size <= places; size *= 2u) {
             for (uint distance = size / 2u; distance > 0u; distance /= 2u) {
                 for (uint pair = lane; pair < places / 2u; pair += gl_WorkGroupSize.x) {
-                    uint low = pair % distance, start = 2u * (pair - low);
+                    uint low = pair & (distance - 1u), start = 2u * (pair - low);
                     uint high = distance == size / 2u ? size - 1u - low : low + distance;
                     order_pair(first, start + low, start + high, count);
                 }

@@ -41,7 +41,7 @@ layout(scalar, set = 0) buffer LightVertexCounts {
 uint stored_light_vertices() { return min(wanted_light_vertices, light_vertex_capacity); }
 
 // Stores a vertex at the next free place, in no certain order, and returns the place; NO_LIGHT_VERTEX where all are taken.
-// An atomic for each lane: it may be called by any lanes, wherever they are.
+// An atomic for each lane, so that any lanes may call it, wherever they are: with a ballot it takes as long (30 ns, lavapipe).
 uint append_light_vertex(LightVertex vertex) {
     uint place = atomicAdd(wanted_light_vertices, 1u);
     if (place >= light_vertex_capacity) return NO_LIGHT_VERTEX;

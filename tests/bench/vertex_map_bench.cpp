@@ -63,6 +63,17 @@ void run(Device& device, uint32_t count) {
     }
 }
 
+// The worst that can be: all vertices in one bucket.
+void run_crowd(Device& device, uint32_t count) {
+    VertexMapProbe probe(device, count);
+    std::vector<GridPoint> points(count, {glm::vec3(0.3f), 0.1f});
+    for (uint32_t i = 0; i < count; ++i) points[i].key = (i * 2654435761u) % count;
+    KernelTimings timings;
+    probe.store(points, std::max(2u, count / 1024), count, &timings);
+    fmt::print("{} vertices in one point: {:.1f} ms to order them\n", count,
+               timings.at("order_large_buckets").seconds * 1e3);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -73,6 +84,7 @@ int main(int argc, char** argv) {
         for (int i = 1; i < argc; ++i) counts.push_back(uint32_t(std::stoul(argv[i])));
         if (counts.empty()) counts = {10000, 100000, 1000000};
         for (const uint32_t count : counts) run(*device, count);
+        for (const uint32_t count : {10000u, 1000000u}) run_crowd(*device, count);
     } catch (const Error& error) {
         fmt::print(stderr, "{}\n", error.what());
         return int(error.code);
