@@ -256,7 +256,8 @@ TEST_CASE("octahedral: directions come back within the stated angles") {
             if (i >= count) return;
             vec3 d = directions[i].xyz;
             vec2 encoded = encode_octahedral(d);
-            results[i] = Decoded(decode_octahedral(encoded), decode_octahedral_16(encode_octahedral_16(d)), encoded);
+            vec3 from_16_bits = decode_octahedral_16(encode_octahedral_16(d));
+            results[i] = Decoded(decode_octahedral(encoded), from_16_bits, encoded);
         }
     )",
                                            {{"Directions", &in}, {"Results", &out}});

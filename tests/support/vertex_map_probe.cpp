@@ -30,8 +30,8 @@ const char* const store_text = R"(
             uint turns = min(4u, count - first);
             for (uint k = 0u; k < turns; ++k) {
                 Point p = points[first + k];
-                LightVertex v = LightVertex(p.position, p.radius, vec3(1, 2, 3), 4.0, vec2(0.5, 0.25), 5u, p.key,
-                                            vec2(6, 7), 8u, light_vertex_link(first + k, p.flags));
+                LightVertex v = LightVertex(p.position, p.radius, vec3(1, 2, 3), 4.0, vec2(0.5, 0.25), 5u,
+                                            p.key, vec2(6, 7), 8u, light_vertex_link(first + k, p.flags));
                 uint vertex = append_light_vertex(v);
                 if (vertex != NO_LIGHT_VERTEX && (p.flags & LIGHT_VERTEX_MERGES) != 0u)
                     enter_grid(vertex, p.position, p.radius, p.key);
@@ -41,7 +41,8 @@ const char* const store_text = R"(
 )";
 
 const char* const query_text = R"(
-    layout(scalar, set = 0) writeonly buffer Found { uint found[]; };  // a row of 1 + room: the count, the keys
+    // Rows of 1 + room: the count, the keys.
+    layout(scalar, set = 0) writeonly buffer Found { uint found[]; };
     void main() {
         uint lanes = gl_NumWorkGroups.x * 64u;
         for (uint i = gl_GlobalInvocationID.x; i < count; i += lanes) {
