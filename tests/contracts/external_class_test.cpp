@@ -83,7 +83,8 @@ GeometrySample paraboloid_sample(Paraboloid r, vec2 u) {
     float k = 2.0 * r.height / (r.radius * r.radius);
     float s = pow(1.0 + u.x * (pow(1.0 + k * k * r.radius * r.radius, 1.5) - 1.0), 2.0 / 3.0);
     float rho = sqrt(max(0.0, s - 1.0)) / k, phi = 6.2831853 * u.y;
-    vec3 p = vec3(rho * cos(phi), rho * sin(phi), 0.5 * k * rho * rho);
+    vec3 p = vec3(rho * cos(phi), rho * sin(phi), 0.0);
+    p.z = 0.5 * k * dot(p.xy, p.xy);
     return GeometrySample(p, normalize(vec3(k * p.xy, -1.0)), 1.0 / paraboloid_area(r));
 }
 GeometrySample paraboloid_sample_towards(Paraboloid r, vec3 reference, vec2 u) { return paraboloid_sample(r, u); }

@@ -1,0 +1,84 @@
+// Where rays leave emissive surfaces: the error that is stated of their origins holds, so that nothing is met
+// that they leave.
+#include <cmath>
+
+#include "tests/support/emission_probe.h"
+
+using namespace etendue;
+using nlohmann::json;
+
+namespace {
+
+// Signed distance from the surface in the shape's own frame, and its gradient there.
+double local_distance(const std::string& name, const glm::dvec3& p, double radius, glm::dvec3& gradient) {
+    if (name == "sphere") {
+        gradient = glm::normalize(p);
+        return glm::length(p) - radius;
+    }
+    if (name == "cylinder") {
+        gradient = glm::normalize(glm::dvec3(p.x, p.y, 0));
+        return std::hypot(p.x, p.y) - radius;
+    }
+    gradient = {0, 0, 1};
+    return p.z;  // disk, rectangle
+}
+
+const std::pair<std::string, json> shapes[] = {{"sphere", {{"radius", 0.7}}},
+                                               {"disk", {{"radius", 0.7}}},
+                                               {"rectangle", {{"size", {0.9, 0.3}}}},
+                                               {"cylinder", {{"radius", 0.7}, {"height", 0.4}}}};
+
+// Each shape upright and squeezed, 30 m apart; the light of number i is the shape of that number.
+SceneDescription shapes_scene(double far) {
+    SceneDescription scene;
+    scene.materials.resize(1);
+    scene.materials[0].surface.class_name = "absorber";
+    scene.materials[0].emission = EmissionDescription{};
+    scene.materials[0].emission->value = {1, 1, 1};
+    for (double side : {-1.0, 1.0})  // the device's coordinates are relative to the middle
+        for (const auto& [name, parameters] : shapes)
+            for (bool squeezed : {false, true}) {
+                PlacedObject shape;
+                shape.object = {name, parameters, "/shape"};
+                if (squeezed)
+                    shape.world_from_local = {{0.9, 0.2, 0, 0}, {0, -0.7, 0.3, 0}, {0.1, 0, -1.2, 0}, {}};
+                const double along = 30.0 * double(scene.shapes.size() % 8);
+                shape.world_from_local[3] = {side * far, 0.6 * side * far + along, -0.3 * side * far, 1};
+                scene.shapes.push_back(shape);
+            }
+    return scene;
+}
+
+}  // namespace
+
+TEST_CASE("emission: origins lie within their error of the surface, and rays do not meet what they leave") {
+    for (double far : {20.0, 5000.0}) {
+        EmissionProbe probe(shapes_scene(far));
+        REQUIRE(probe.scene().lights == 16);
+        const auto transforms = probe.scene().buffers.at("Transforms").read_array<TransformRecord>(16);
+        double worst[16] = {};
+        uint32_t met = 0, i = 0;
+        for (const ProbedRay& r : probe.emit(1 << 18, 4)) {
+            const uint32_t light = i++ % 16;
+            glm::dmat4 world(1);
+            for (int k = 0; k < 4; ++k)
+                world[k] = glm::dvec4(glm::dvec3(transforms[light].world_from_local[k]), k == 3);
+            const glm::dmat4 local = glm::inverse(world);
+            glm::dvec3 gradient;
+            const glm::dvec3 p(local * glm::dvec4(glm::dvec3(r.origin), 1));
+            const double d = local_distance(shapes[light / 2 % 4].first, p, 0.7f, gradient);
+            const double distance = std::abs(d) / glm::length(gradient * glm::dmat3(local));
+            const double bound = glm::dot(glm::abs(glm::dvec3(r.normal)), glm::dvec3(r.error));
+            worst[light] = std::max(worst[light], bound > 0 ? distance / bound : 2.0);
+            met += r.t_hit < 5;
+        }
+        CHECK(met == 0);
+        for (uint32_t light = 0; light < 16; ++light) {
+            INFO(shapes[light / 2 % 4].first, ", ", far, " m away",
+                 std::string(light % 2 ? ", squeezed" : ""));
+            CHECK(worst[light] <= 1);
+            // Not wide beyond use, either; upright planes are met exactly.
+            if (light % 2) CHECK(worst[light] > 0.01);
+        }
+    }
+}
