@@ -1,25 +1,24 @@
 #!/usr/bin/env python3
-"""Prints the time to error of étendue and of other path tracers on the same cores, in one run.
+"""Error against time of étendue and of other renderers, on the same cores in one run.
 
-    tools/compare_peers.py [--threads 1] [--scenes DIR] [--repeats 3] [SCENE[=ERROR] …]
+    tools/compare_peers.py [-o DIR] [--time 30] [--threads 1] [--size WxH] [--peers A,B] [SCENE.gltf …]
 
-DIR/SCENE holds scene.gltf and reference.exr. ERROR is the relMSE to reach (0.01 where nothing is said). For every
-renderer the tool finds the two powers of two, in samples a pixel, with ERROR between their errors, then renders
-them in turn with the others, `--repeats` times with different seeds: a machine that slows down for a while slows
-all of them down. Between the two (medians) a power law says how many samples reach ERROR, and the larger one says
-how fast samples are: rendering alone, without start, scene and compilation. The reference's own noise (residual)
-is subtracted.
+For every scene it runs `etendue bench` into DIR/NAME, then gives every engine of the peers the same time in the same
+way: renders of 1, 2, 4, … samples a pixel, each with a seed of its own, in turn with the other engines, measured
+against the same reference. Seconds are of rendering alone, without start, scene and compilation. The points join
+DIR/NAME/bench.csv, and `etendue bench` draws the page again. The reference is `reference.exr` beside a scene called
+scene.gltf, else one that étendue renders.
 
 The peers come into Python environments under build/peers: Mitsuba 3 (with LLVM 19, unpacked from Debian's package),
-LuxCore, Cycles (Blender's module). One that is missing, or that cannot do a scene, is a line in the report and no
-failure.
+LuxCore, Cycles (Blender's module). One that is missing, that cannot do a scene, or whose images have another mean, is a
+note on the page and no failure.
 """
 
 import argparse
+import csv
 import json
 import math
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -27,16 +26,22 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PEERS = ROOT / "build" / "peers"
-PACKAGES = {"mitsuba": ["mitsuba"], "luxcore": ["pyluxcore"], "cycles": ["bpy"]}
-# relMSE to reach, and the noise that is left in the reference
-SCENES = {"cornell_rgb": (0.01, 4.4e-4), "veach_mis": (0.01, 2.0e-4), "furnace": (0.001, 1.9e-5)}
+PACKAGES = {"mitsuba": ["mitsuba"], "luxcore": ["pyluxcore"], "cycles": ["bpy"], "tool": ["pillow"]}
+ENGINES = {  # peer: [(name in tables, engine)]
+    "mitsuba": [("Mitsuba path", "path"), ("Mitsuba ptracer", "ptracer")],
+    "luxcore": [(f"LuxCore {e}", e) for e in ("PATHCPU", "BIDIRCPU", "BIDIRVMCPU")],
+    "cycles": [("Cycles", "path")],
+}
+# relMSE of references whose noise is known, by their folder's name
+REFERENCES = {"cornell_rgb": 4.4e-4, "veach_mis": 2.0e-4, "furnace": 1.9e-5}
+MEAN_TOLERANCE = 0.01  # beyond it, and beyond four standard errors, two renderers do not render the same
 
 
 def note(text):
     print(text, file=sys.stderr, flush=True)
 
 
-# ---- The environment, in which this script runs itself again
+# ---- The environments
 
 
 def environment_for(name):
@@ -44,35 +49,26 @@ def environment_for(name):
     return PEERS / name / "bin" / "python"
 
 
+def packages(name):
+    return " ".join([*PACKAGES[name], "numpy", "OpenEXR"])
+
+
 def installed(name):
-    return (PEERS / name / "installed").exists()
+    marker = PEERS / name / "installed"
+    return marker.exists() and marker.read_text() == packages(name)
 
 
 def set_up(names):
     for name in names:
-        python = environment_for(name)
         if installed(name):
             continue
         note(f"setting up {name} in {PEERS.relative_to(ROOT)}")
         PEERS.mkdir(parents=True, exist_ok=True)
         subprocess.run([sys.executable, "-m", "venv", PEERS / name], check=True)
-        done = subprocess.run(
-            [
-                python,
-                "-m",
-                "pip",
-                "install",
-                "--quiet",
-                "--disable-pip-version-check",
-                *PACKAGES.get(name, []),
-                "numpy",
-                "OpenEXR",
-            ],
-            capture_output=True,
-            text=True,
-        )
-        if done.returncode == 0:
-            (PEERS / name / "installed").touch()  # the last thing: an interrupted set-up is done again
+        pip = [environment_for(name), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        done = subprocess.run([*pip, *packages(name).split()], capture_output=True, text=True)
+        if done.returncode == 0:  # the last thing: an interrupted set-up is done again
+            (PEERS / name / "installed").write_text(packages(name))
         else:
             note(f"{name}: cannot be installed: {(done.stderr.strip().splitlines() or ['?'])[-1]}")
 
@@ -96,83 +92,37 @@ def find_llvm():
     return look()
 
 
-# ---- Renderers: render(samples, seed) -> (image, seconds, samples done)
+# ---- Renderers
 
 
-class Etendue:
-    name = "étendue"
-
-    def __init__(self, program, scene, width, height, cores, folder):
-        self.command = [
-            "taskset",
-            "-c",
-            cores,
-            str(program),
-            "render",
-            str(scene),
-            "--size",
-            f"{width}x{height}",
-            "--quiet",
-        ]
-        self.environment = os.environ | {"LP_NUM_THREADS": str(cores.count(",") + 1)}
-        self.folder = folder
-        self.render(1, 1)  # fills the caches of kernels
-        stats = self.render(1, 1, stats_only=True)
-        self.description = f"étendue {stats['version']}, {stats['driver']}, {stats['schedule']}"
-
-    def render(self, samples, seed, stats_only=False):
-        image, stats = self.folder / "etendue.exr", self.folder / "etendue.json"
-        done = subprocess.run(
-            [
-                *self.command,
-                "--passes",
-                str(samples),
-                "--seed",
-                str(seed),
-                "-o",
-                str(image),
-                "--stats",
-                str(stats),
-            ],
-            env=self.environment,
-            capture_output=True,
-            text=True,
-        )
-        if done.returncode != 0:
-            raise RuntimeError((done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1])
-        values = json.loads(stats.read_text())
-        return values if stats_only else (read_exr(image), values["seconds"], values["passes"])
-
-    def close(self):
-        pass
+def run_bench(a, cores, arguments, **options):
+    command = ["taskset", "-c", cores, a.etendue, "bench", *map(str, arguments)]
+    threads = {"LP_NUM_THREADS": str(cores.count(",") + 1)}
+    return subprocess.run(command, env=os.environ | threads, **options).returncode
 
 
-class Peer:
-    def __init__(self, name, scene, width, height, cores, folder, environment):
-        self.name, self.file = name, folder / f"{name}.npy"
-        if not installed(name):
+class Engine:
+    """One engine of a peer, in a process of its own."""
+
+    def __init__(self, peer, name, engine, scene, size, cores, folder):
+        if not installed(peer):
             raise RuntimeError("could not be installed")
-        worker = ROOT / "tools" / "peers" / f"{name}_worker.py"
+        self.name, self.file = name, folder / "image.npy"
+        llvm = find_llvm() if peer == "mitsuba" else None
+        worker = ROOT / "tools" / "peers" / f"{peer}_worker.py"
+        threads = cores.count(",") + 1
+        words = [environment_for(peer), worker, scene, *size, threads, engine]
         self.process = subprocess.Popen(
-            [
-                "taskset",
-                "-c",
-                cores,
-                str(environment_for(name)),
-                str(worker),
-                str(scene),
-                str(width),
-                str(height),
-                str(cores.count(",") + 1),
-            ],
+            ["taskset", "-c", cores, *map(str, words)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
-            env=os.environ | environment,
+            env=os.environ | ({"DRJIT_LIBLLVM_PATH": str(llvm)} if llvm else {}),
         )
-        self.description = self._reply()["ready"]
-        self.is_warm = False
+        ready = self._reply()
+        self.description, self.least = ready["ready"], ready["least"]
+        self.points, self.spent, self.renders, self.longest = [], 0.0, 0, None
 
     def _reply(self):
         line = self.process.stdout.readline()
@@ -183,21 +133,14 @@ class Peer:
             raise RuntimeError(reply["error"])
         return reply
 
-    def _once(self, samples, seed):
-        self.process.stdin.write(
-            json.dumps({"samples": samples, "seed": seed, "file": str(self.file)}) + "\n"
-        )
-        self.process.stdin.flush()
-        return self._reply()
-
     def render(self, samples, seed):
         import numpy as np
 
-        if not self.is_warm:  # compiles; the kernels do not depend on the number of samples
-            self._once(1, seed)
-            self.is_warm = True
-        reply = self._once(samples, seed)
-        return np.load(self.file), reply["seconds"], reply["samples"]
+        request = {"samples": samples, "seed": seed, "file": str(self.file)}
+        self.process.stdin.write(json.dumps(request) + "\n")
+        self.process.stdin.flush()
+        seconds = self._reply()["seconds"]
+        return np.load(self.file), seconds
 
     def close(self):
         self.process.stdin.close()
@@ -207,7 +150,68 @@ class Peer:
             self.process.kill()
 
 
-# ---- Images
+# ---- The measurement, as `etendue bench` does it
+
+
+def measure(engine, reference, samples, seed):
+    import numpy as np
+
+    image, seconds = engine.render(samples, seed + engine.renders)
+    i, r = image.astype(np.float64), reference["image"].astype(np.float64)
+    measured = float(np.mean((i - r) ** 2 / (r * r + 0.01 * np.mean(r) ** 2)))
+    point = {
+        "seed": seed + engine.renders,
+        "passes": samples,
+        "seconds": max(seconds, 1e-6),
+        "relmse": measured - reference["relmse"],
+        "relmse_measured": measured,
+        "bias": float(i.mean() / r.mean() - 1),
+    }
+    engine.renders += 1
+    engine.spent += point["seconds"]
+    engine.points.append(point)
+    if engine.longest is None or samples >= engine.longest[0]:
+        engine.longest = samples, image
+    note(
+        f"{engine.name}: {samples} samples, {seconds:.3g} s, relMSE {point['relmse']:.3g}, bias {point['bias']:+.2%}"
+    )
+
+
+def measure_round(engine, reference, first, seconds, seed):
+    """1, 2, 4, … samples; the first round leaves a quarter of the time to the others."""
+    limit = 0.75 * seconds if first else seconds
+    samples, following = engine.least, 0.0
+    while (first and samples == engine.least) or engine.spent + following <= limit:
+        before = engine.spent
+        measure(engine, reference, samples, seed)
+        following = 2 * (engine.spent - before)
+        samples *= 2
+
+
+def measure_all(engines, reference, seconds, seed):
+    """Fills the engines' points; returns {name: why it failed}."""
+    failed = {}
+    for turn in range(8):
+        for engine in [e for e in engines if e.name not in failed]:
+            try:
+                if turn == 0:
+                    engine.render(engine.least, seed)  # compiles
+                if turn == 0 or engine.spent <= 0.9 * seconds:
+                    measure_round(engine, reference, turn == 0, seconds, seed)
+            except (RuntimeError, BrokenPipeError) as e:
+                failed[engine.name] = str(e)
+    return failed
+
+
+def mean_of_biases(points):
+    """Mean and standard error, weighted by samples."""
+    weight = sum(p["passes"] for p in points)
+    mean = sum(p["passes"] * p["bias"] for p in points) / weight
+    scatter = sum(p["passes"] * (p["bias"] - mean) ** 2 for p in points)
+    return mean, math.sqrt(scatter / max(1, len(points) - 1) / weight)
+
+
+# ---- Results
 
 
 def read_exr(path):
@@ -220,179 +224,119 @@ def read_exr(path):
     return np.stack([channels[c].pixels for c in "RGB"], -1)
 
 
-def rel_mse(image, reference):
+def write_png(path, image, scale):
     import numpy as np
+    from PIL import Image
 
-    i, r = image.astype(np.float64), reference.astype(np.float64)
-    return float(np.mean((i - r) ** 2 / (r * r + 0.01 * np.mean(r) ** 2)))
-
-
-# ---- The measurement
-
-
-def samples_for(renderer, reference, target, residual, budget):
-    """Two numbers of samples a pixel, powers of two, with errors above and below the target, as far as renders of
-    `budget` seconds reach it. Low-discrepancy samples are only at their best in powers of two.
-    """
-    errors, samples = {}, 4
-    while samples not in errors:
-        image, seconds, _ = renderer.render(samples, 1000 + len(errors))
-        errors[samples] = error = max(rel_mse(image, reference) - residual, 1e-9)
-        steps = math.log2(error / target)
-        steps = math.ceil(steps) if steps > 0 else math.floor(steps)
-        following = 2 ** max(0, math.log2(samples) + min(steps, 4))
-        if samples > 1 and following > samples and seconds * following / samples > budget:
-            following = samples
-        if error <= target and samples // 2 in errors and errors[samples // 2] > target:
-            break
-        samples = int(following)
-    above = [n for n in errors if errors[n] > target]
-    upper = min((n for n in errors if errors[n] <= target), default=max(errors))
-    return sorted({max(above, default=max(1, upper // 2)), upper})
+    x = np.clip(image * scale, 0, 1)
+    encoded = np.where(x <= 0.0031308, 12.92 * x, 1.055 * x ** (1 / 2.4) - 0.055)  # sRGB
+    Image.fromarray(np.round(encoded * 255).astype(np.uint8)).save(path)
 
 
-def measure(renderers, reference, target, residual, repeats, budget):
-    """{renderer: {samples: [(seconds, error, samples done, bias of the mean)]}}, and {renderer: why it failed}."""
-    samples, failed = {}, {}
-    for r in renderers:
-        try:
-            samples[r] = samples_for(r, reference, target, residual, budget)
-        except RuntimeError as e:
-            failed[r] = str(e)
-    rows = {r: {n: [] for n in samples[r]} for r in samples}
-    for i in range(repeats):
-        for r in [r for r in samples if r not in failed]:
-            try:
-                for n in samples[r]:
-                    image, seconds, done = r.render(n, 2000 + i)
-                    error = rel_mse(image, reference) - residual
-                    rows[r][n].append((seconds, error, done, image.mean() / reference.mean() - 1))
-                    note(f"  {r.name}: {done:.0f} samples, {seconds:.2f} s, relMSE {error:.5f}")
-            except RuntimeError as e:
-                failed[r] = str(e)
-    return {r: rows[r] for r in rows if r not in failed}, failed
-
-
-def to_error(points, target):
-    """Samples at which a power law through two points (samples, error) meets the target."""
-    (n0, e0), (n1, e1) = points[0], points[-1]
-    power = math.log(e0 / e1) / math.log(n1 / n0) if n1 != n0 and e0 > e1 else 1.0
-    return n1 * (e1 / target) ** (1 / power)
-
-
-def table(name, target, results, pixels, base):
-    print(f"\n{name}: seconds to relMSE {target:g}")
-    print(
-        f"{'':<10}{'seconds':>9}{'samples':>9}{'M samples/s':>13}{'spread':>8}{'mean':>9}   time / Mitsuba's "
-        "  measured"
-    )
-    median = statistics.median
-    summary = {}
-    for r, rows in results.items():
-        points = [
-            (median(done for _, _, done, _ in rows[n]), median(error for _, error, _, _ in rows[n]))
-            for n in rows
-        ]
-        last = rows[max(rows)]
-        speeds = [done * pixels / seconds / 1e6 for seconds, _, done, _ in last]
-        needed = to_error(points, target)
-        summary[r] = (
-            needed * pixels / 1e6 / median(speeds),
-            needed,
-            median(speeds),
-            (max(speeds) - min(speeds)) / median(speeds),
-            statistics.mean(row[3] for row in last),
-            points,
-        )
-    reference = next((summary[r][0] for r in summary if r.name == base), None)
-    for r, (seconds, needed, speed, spread, bias, points) in summary.items():
-        ratio = f"{seconds / reference:.2f}" if reference else "-"
-        measured = ", ".join(f"{n:.0f} samples {e:.2g}" for n, e in points)
-        print(
-            f"{r.name:<10}{seconds:>9.2f}{needed:>9.0f}{speed:>13.3f}{spread:>8.0%}{bias:>+9.2%}  "
-            f" {ratio:<16}   {measured}"
-        )
-
-
-def run(a):
-    wanted = [n for n in ("mitsuba", "luxcore", "cycles") if n in a.peers]
-    llvm = find_llvm() if "mitsuba" in wanted else None
-    cores = ",".join(map(str, sorted(os.sched_getaffinity(0))[: a.threads]))
-    if cores.count(",") + 1 < a.threads:
-        note(f"only {cores.count(',') + 1} cores for {a.threads} threads")
-    descriptions, lines = {}, []
-    load = os.getloadavg()[0]
-    with tempfile.TemporaryDirectory() as folder:
-        for text in a.scene:
-            name, _, error = text.partition("=")
-            target, residual = SCENES.get(name, (0.01, 0.0))
-            target = float(error) if error else target
-            scene = Path(a.scenes) / name / "scene.gltf"
-            reference = read_exr(scene.parent / "reference.exr")
-            height, width = reference.shape[:2]
-            note(f"{name}, {width} x {height}")
-            renderers = []
-            for start in [lambda: Etendue(a.etendue, scene, width, height, cores, Path(folder))] + [
-                lambda n=n: Peer(
-                    n,
-                    scene,
-                    width,
-                    height,
-                    cores,
-                    Path(folder),
-                    {"DRJIT_LIBLLVM_PATH": str(llvm)} if n == "mitsuba" and llvm else {},
+def add_results(folder, scene, engines, failed, reference, notes):
+    document = json.loads((folder / "bench.json").read_text(encoding="utf-8"))
+    entry = next(s for s in document["scenes"] if s["name"] == scene)
+    entry["notes"] += notes
+    with open(folder / "bench.csv", "a", encoding="utf-8", newline="") as file:
+        fields = open(folder / "bench.csv", encoding="utf-8").readline().strip().split(",")
+        rows = csv.DictWriter(file, fields, restval=0, lineterminator="\n")
+        for engine in engines:
+            if engine.name in failed:
+                entry["notes"].append(f"{engine.name}: failed: {failed[engine.name]}")
+                continue
+            bias, error = mean_of_biases(engine.points)
+            if abs(bias) > MEAN_TOLERANCE + 4 * error:
+                entry["notes"].append(
+                    f"{engine.name}: not compared: its mean differs by {bias:+.2%} ± {error:.2%}"
                 )
-                for n in wanted
-            ]:
-                label = "étendue" if start.__defaults__ is None else start.__defaults__[0]
+                continue
+            entry["notes"].append(f"{engine.name}: {engine.description}")
+            rows.writerows({"scene": scene, "algorithm": engine.name, **p} for p in engine.points)
+            scale = 0.25 / reference["image"][..., 1].mean()
+            write_png(folder / f"{scene}.{engine.name}.png", engine.longest[1], scale)
+    (folder / "bench.json").write_text(json.dumps(document, indent=2, ensure_ascii=False), encoding="utf-8")
+
+
+def compare(a, scene, cores):
+    name = scene.parent.name if scene.stem == "scene" else scene.stem
+    folder = a.output / name
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    arguments = [scene, "-o", folder, "--time", a.time, "--seed", a.seed, "--algorithms", a.algorithms]
+    if a.size:
+        arguments += ["--size", a.size]
+    beside = scene.parent / "reference.exr"
+    if scene.stem == "scene" and beside.exists():
+        arguments += ["--reference", beside]
+        if name in REFERENCES:
+            arguments += ["--reference-relmse", REFERENCES[name]]
+    load = os.getloadavg()[0]
+    if code := run_bench(a, cores, arguments, stdout=subprocess.DEVNULL):
+        sys.exit(code)
+    entry = json.loads((folder / "bench.json").read_text(encoding="utf-8"))["scenes"][0]
+    name, size = entry["name"], (entry["width"], entry["height"])
+    reference = {"image": read_exr(folder / f"{name}.reference.exr"), "relmse": entry["reference_relmse"]}
+    engines, notes = [], []
+    with tempfile.TemporaryDirectory() as temporary:
+        for peer in a.peers:
+            for label, engine in ENGINES[peer]:
+                own = Path(temporary) / label
+                own.mkdir()
                 try:
-                    renderers.append(start())
-                    descriptions[label] = renderers[-1].description
+                    engines.append(Engine(peer, label, engine, scene, size, cores, own))
                 except (RuntimeError, OSError) as e:
-                    lines.append(f"{name}: no {label}: {e}")
-            results, failed = measure(renderers, reference, target, residual, a.repeats, a.budget)
-            lines += [f"{name}: {r.name} failed: {why}" for r, why in failed.items()]
-            table(name, target, results, width * height, "mitsuba")
-            for r in renderers:
-                r.close()
-    print(
-        f"\n{a.threads} thread{'s' * (a.threads > 1)} on core{'s' * (a.threads > 1)} {cores}; load average"
-        f" {load:.1f} before, {os.getloadavg()[0]:.1f} after; median of {a.repeats}"
+                    notes.append(f"{label}: left out: {e}")
+                    note(notes[-1])
+        failed = measure_all(engines, reference, a.time, a.seed)
+        for engine in engines:
+            engine.close()
+    notes.append(
+        f"On core{'s' * (a.threads > 1)} {cores}; load average {load:.1f} before and {os.getloadavg()[0]:.1f} after."
     )
-    print("\n".join(list(descriptions.values()) + lines))
+    add_results(folder, name, engines, failed, reference, notes)
+    run_bench(a, cores, ["-o", folder])
+    print(f"{folder / 'index.html'}\n", flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("scene", nargs="*", default=list(SCENES), metavar="SCENE[=ERROR]")
-    parser.add_argument("--scenes", default=str(ROOT.parent / "shared" / "reference"), metavar="DIR")
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--budget", type=float, default=120, metavar="SEC", help="longest single render; 120")
-    parser.add_argument("--peers", default="mitsuba,luxcore,cycles", help="of mitsuba, luxcore, cycles; all")
+    default = ROOT / "scenes" / "cornell_box.gltf"
+    parser.add_argument("scene", nargs="*", type=Path, default=[default], metavar="SCENE.gltf")
+    parser.add_argument("-o", "--output", type=Path, default=ROOT / "out" / "peers", metavar="DIR")
+    parser.add_argument("--time", type=float, default=30, metavar="SEC", help="for each engine; 30")
+    parser.add_argument("--threads", type=int, default=1, metavar="N", help="1")
+    parser.add_argument("--size", metavar="WxH", help="the reference's, else as for `etendue render`")
+    parser.add_argument("--seed", type=int, default=0, metavar="N")
+    parser.add_argument(
+        "--algorithms", default="backward,forward,bidirectional", metavar="A,B", help="of étendue"
+    )
+    parser.add_argument(
+        "--peers", default=",".join(ENGINES), metavar="A,B", help="of mitsuba, luxcore, cycles; all"
+    )
     parser.add_argument("--etendue", default=str(ROOT / "build" / "release" / "etendue"), metavar="PATH")
     a = parser.parse_args()
     a.peers = [p for p in a.peers.split(",") if p]
-    if unknown := set(a.peers) - set(PACKAGES):
-        parser.error(f"no peer '{unknown.pop()}'; there are {', '.join(PACKAGES)}")
+    if unknown := set(a.peers) - set(ENGINES):
+        parser.error(f"no peer '{unknown.pop()}'; there are {', '.join(ENGINES)}")
+    if not a.time > 0:
+        parser.error("--time must be above 0")
     if not Path(a.etendue).exists():
         parser.error(f"{a.etendue} is not there: build étendue, or name it with --etendue")
-    for text in a.scene:
-        folder = Path(a.scenes) / text.partition("=")[0]
-        for file in ("scene.gltf", "reference.exr"):
-            if not (folder / file).exists():
-                parser.error(
-                    f"{folder / file} is not there; --scenes names the folder of the scenes' folders"
-                )
+    for scene in a.scene:
+        if not scene.exists():
+            parser.error(f"{scene} is not there")
     # Images are read in an environment of the tool's own: this script runs again there.
     if Path(sys.prefix).resolve() != (PEERS / "tool").resolve():
         set_up(["tool", *a.peers])
         if not installed("tool"):
-            sys.exit("numpy and OpenEXR could not be installed")
+            sys.exit("numpy, OpenEXR and pillow could not be installed")
         os.execv(environment_for("tool"), [str(environment_for("tool")), *sys.argv])
-    run(a)
+    cores = ",".join(map(str, sorted(os.sched_getaffinity(0))[: a.threads]))
+    if cores.count(",") + 1 < a.threads:
+        note(f"only {cores.count(',') + 1} cores for {a.threads} threads")
+    for scene in a.scene:
+        compare(a, scene, cores)
 
 
 if __name__ == "__main__":

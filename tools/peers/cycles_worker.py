@@ -1,4 +1,4 @@
-"""Cycles, in Blender's Python module. Diffuse surfaces and emissive meshes."""
+"""Cycles, in Blender's Python module. It has no spheres: they become meshes."""
 
 import os
 import tempfile
@@ -9,43 +9,63 @@ import scene_data
 import worker
 
 
+def material(bpy, name, m):
+    result = bpy.data.materials.new(name)
+    result.use_nodes = True
+    nodes, links = result.node_tree.nodes, result.node_tree.links
+    nodes.clear()
+    output = nodes.new("ShaderNodeOutputMaterial")
+    kind = m["class"]
+    if max(m["emission"]) > 0:  # black behind: the front emits, the back does not
+        if kind != "lambertian" or max(m["reflectance"]) > 0:
+            raise scene_data.Unsupported("an emitting surface that is not black")
+        emission, black, side, mix = (
+            nodes.new("ShaderNode" + name) for name in ("Emission", "BsdfDiffuse", "NewGeometry", "MixShader")
+        )
+        emission.inputs["Color"].default_value = [*m["emission"], 1]
+        black.inputs["Color"].default_value = [0, 0, 0, 1]
+        links.new(side.outputs["Backfacing"], mix.inputs[0])
+        links.new(emission.outputs[0], mix.inputs[1])
+        links.new(black.outputs[0], mix.inputs[2])
+        links.new(mix.outputs[0], output.inputs["Surface"])
+        result.cycles.emission_sampling = "FRONT"
+        return result
+    if kind == "lambertian":
+        node = nodes.new("ShaderNodeBsdfDiffuse")
+    elif kind == "conductor" and "reflectance" in m:
+        node = nodes.new("ShaderNodeBsdfAnisotropic")
+        node.distribution = "GGX"
+    elif kind == "dielectric":
+        node = nodes.new("ShaderNodeBsdfGlass")
+        node.distribution = "GGX"
+        node.inputs["IOR"].default_value = m["ior"]
+    else:
+        raise scene_data.Unsupported(f"this kind of '{kind}'")
+    node.inputs["Color"].default_value = [*m.get("reflectance", [1.0] * 3), 1]
+    if kind != "lambertian":
+        node.inputs["Roughness"].default_value = m["alpha"] ** 0.5  # Cycles squares it
+    links.new(node.outputs[0], output.inputs["Surface"])
+    return result
+
+
 def start(a):
     import bpy
     from mathutils import Matrix
 
     data = scene_data.load(a.scene)
-    if data["spheres"] or data["environment"]:
-        raise scene_data.Unsupported("spheres and environments")
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
-    for i, (positions, triangles, m) in enumerate(data["meshes"]):
-        if m["class"] != "lambertian":
-            raise scene_data.Unsupported(f"the surface '{m['class']}'")
+    for i, data_mesh in enumerate(data["meshes"] + [sphere.mesh() for sphere in data["spheres"]]):
         mesh = bpy.data.meshes.new(f"mesh{i}")
-        mesh.from_pydata(positions.tolist(), [], triangles.tolist())
-        material = bpy.data.materials.new(f"material{i}")
-        material.use_nodes = True
-        nodes, links = material.node_tree.nodes, material.node_tree.links
-        nodes.clear()
-        output = nodes.new("ShaderNodeOutputMaterial")
-        if max(m["emission"]) > 0:  # black behind: the front emits, the back does not
-            emission, black, side, mix = (
-                nodes.new("ShaderNode" + name)
-                for name in ("Emission", "BsdfDiffuse", "NewGeometry", "MixShader")
-            )
-            emission.inputs["Color"].default_value = [*m["emission"], 1]
-            black.inputs["Color"].default_value = [0, 0, 0, 1]
-            links.new(side.outputs["Backfacing"], mix.inputs[0])
-            links.new(emission.outputs[0], mix.inputs[1])
-            links.new(black.outputs[0], mix.inputs[2])
-            links.new(mix.outputs[0], output.inputs["Surface"])
-            material.cycles.emission_sampling = "FRONT"
-        else:
-            diffuse = nodes.new("ShaderNodeBsdfDiffuse")
-            diffuse.inputs["Color"].default_value = [*m["reflectance"], 1]
-            links.new(diffuse.outputs[0], output.inputs["Surface"])
-        mesh.materials.append(material)
+        mesh.from_pydata(data_mesh.positions.tolist(), [], data_mesh.triangles.tolist())
+        if data_mesh.normals is not None:
+            mesh.normals_split_custom_set_from_vertices(data_mesh.normals.tolist())
+        mesh.materials.append(material(bpy, f"material{i}", data_mesh.material))
         scene.collection.objects.link(bpy.data.objects.new(f"object{i}", mesh))
+    if data["environment"]:
+        scene.world = bpy.data.worlds.new("world")
+        scene.world.use_nodes = True
+        scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = [*data["environment"], 1]
     camera = bpy.data.cameras.new("camera")
     camera.sensor_fit, camera.angle = "VERTICAL", data["camera"]["yfov"]
     camera.clip_start, camera.clip_end = 1e-3, 1e6
@@ -66,6 +86,8 @@ def start(a):
     cycles.device, cycles.use_adaptive_sampling, cycles.use_denoising = "CPU", False, False
     cycles.pixel_filter_type = "BOX"
     cycles.max_bounces = cycles.diffuse_bounces = 64
+    cycles.glossy_bounces = cycles.transmission_bounces = 64
+    cycles.blur_glossy = 0
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.use_auto_tile = False
     folder = tempfile.mkdtemp()
@@ -80,16 +102,17 @@ def start(a):
     once(1, 0)
 
     def render(samples, seed):
-        start_up = min(once(1, seed) for _ in range(2))  # scene update, film and file: not rendering
-        seconds = once(samples, seed) - start_up
+        # Scene update, film and file are not rendering: of two renders the difference in samples counts.
+        start_up = min(once(1, seed) for _ in range(2))
+        seconds = (once(samples, seed) - start_up) * samples / (samples - 1)
         image = bpy.data.images.load(scene.render.filepath)
         image.colorspace_settings.name = "Non-Color"
         pixels = np.empty(a.width * a.height * 4, np.float32)
         image.pixels.foreach_get(pixels)
         bpy.data.images.remove(image)
-        return pixels.reshape(a.height, a.width, 4)[::-1, :, :3], seconds, samples - 1
+        return pixels.reshape(a.height, a.width, 4)[::-1, :, :3], seconds
 
-    return f"Cycles {bpy.app.version_string}", render
+    return f"Cycles {bpy.app.version_string}", 16, render
 
 
 worker.serve(start)

@@ -1,4 +1,4 @@
-"""Mitsuba 3: variant llvm_ad_rgb, integrator `path` without a depth limit, one kernel for the whole image."""
+"""Mitsuba 3: variant llvm_ad_rgb, integrators `path` and `ptracer` without a depth limit, one kernel for the whole image."""
 
 import math
 import os
@@ -13,14 +13,12 @@ import worker
 def bsdf(m):
     kind = m["class"]
     color = {"type": "rgb", "value": m.get("reflectance", [0.5] * 3)}
-    alpha = m.get("alpha", 0)
-    if m.get("multiscatter"):
-        raise scene_data.Unsupported("multiscatter")
+    alpha = m["alpha"]
     if kind == "lambertian":
         return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
     if kind == "conductor":
         if "eta" in m:
-            metal = {key: {"type": "rgb", "value": m[key]} for key in ("eta", "k")}
+            metal = {key: {"type": "rgb", "value": m.get(key, [1.0] * 3)} for key in ("eta", "k")}
         else:
             metal = {"material": "none", "specular_reflectance": color}
         rough = (
@@ -39,11 +37,14 @@ def bsdf(m):
     raise scene_data.Unsupported(f"the surface '{kind}'")
 
 
-def ply(mi, positions, triangles):
-    mesh = mi.Mesh("mesh", len(positions), len(triangles))
+def ply(mi, data):
+    smooth = data.normals is not None
+    mesh = mi.Mesh("mesh", len(data.positions), len(data.triangles), has_vertex_normals=smooth)
     parameters = mi.traverse(mesh)
-    parameters["vertex_positions"] = positions.astype(np.float32).ravel()
-    parameters["faces"] = triangles.ravel()
+    parameters["vertex_positions"] = data.positions.astype(np.float32).ravel()
+    parameters["faces"] = data.triangles.ravel()
+    if smooth:
+        parameters["vertex_normals"] = data.normals.astype(np.float32).ravel()
     parameters.update()
     handle, path = tempfile.mkstemp(".ply")
     os.close(handle)
@@ -51,12 +52,12 @@ def ply(mi, positions, triangles):
     return path
 
 
-def scene_dict(mi, data, width, height, sampler="independent"):
+def scene_dict(mi, data, width, height, integrator):
     camera = data["camera"]
     turned = camera["matrix"] @ np.diag([-1.0, 1, -1, 1])  # Mitsuba's cameras look along +z, +x to the left
     scene = {
         "type": "scene",
-        "integrator": {"type": "path", "max_depth": -1},
+        "integrator": {"type": integrator, "max_depth": -1},
         "sensor": {
             "type": "perspective",
             "fov": math.degrees(camera["yfov"]),
@@ -64,7 +65,7 @@ def scene_dict(mi, data, width, height, sampler="independent"):
             "near_clip": 1e-3,
             "far_clip": 1e6,
             "to_world": mi.ScalarTransform4f(turned),
-            "sampler": {"type": sampler},
+            "sampler": {"type": "independent"},
             "film": {
                 "type": "hdrfilm",
                 "width": width,
@@ -82,18 +83,19 @@ def scene_dict(mi, data, width, height, sampler="independent"):
             shape["emitter"] = {"type": "area", "radiance": {"type": "rgb", "value": m["emission"]}}
         scene[f"shape{len(scene)}"] = shape
 
-    for positions, triangles, m in data["meshes"]:
-        corners = scene_data.as_quad(positions, triangles)
+    for mesh in data["meshes"]:
+        corners = scene_data.as_quad(mesh)
         if corners is None:
-            add({"type": "ply", "filename": ply(mi, positions, triangles), "face_normals": True}, m)
+            flat = mesh.normals is None
+            add({"type": "ply", "filename": ply(mi, mesh), "face_normals": flat}, mesh.material)
             continue
         x, y = (corners[1] - corners[0]) / 2, (corners[3] - corners[0]) / 2
         normal = np.cross(x, y)
         to_world = np.eye(4)  # Mitsuba's own rectangle is [-1, 1]² in xy and faces +z
         to_world[:3] = np.stack([x, y, normal / np.linalg.norm(normal), corners[0] + x + y], 1)
-        add({"type": "rectangle", "to_world": mi.ScalarTransform4f(to_world)}, m)
-    for centre, radius, m in data["spheres"]:
-        add({"type": "sphere", "center": centre, "radius": radius}, m)
+        add({"type": "rectangle", "to_world": mi.ScalarTransform4f(to_world)}, mesh.material)
+    for sphere in data["spheres"]:
+        add({"type": "sphere", "center": sphere.centre, "radius": sphere.radius}, sphere.material)
     if data["environment"]:
         scene["environment"] = {"type": "constant", "radiance": {"type": "rgb", "value": data["environment"]}}
     return scene
@@ -105,16 +107,16 @@ def start(a):
 
     mi.set_variant("llvm_ad_rgb")
     dr.set_thread_count(a.threads)
-    scene = mi.load_dict(scene_dict(mi, scene_data.load(a.scene), a.width, a.height))
+    scene = mi.load_dict(scene_dict(mi, scene_data.load(a.scene), a.width, a.height, a.engine))
 
     def render(samples, seed):
         begin = time.perf_counter()
         image = mi.render(scene, spp=samples, seed=seed)
         dr.eval(image)
         dr.sync_thread()
-        return np.array(image), time.perf_counter() - begin, samples
+        return np.array(image), time.perf_counter() - begin
 
-    return f"Mitsuba {mi.__version__} llvm_ad_rgb path", render
+    return f"Mitsuba {mi.__version__} llvm_ad_rgb {a.engine}", 1, render
 
 
 worker.serve(start)

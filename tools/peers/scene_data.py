@@ -1,7 +1,8 @@
-"""Reads the part of the scene format that the reference scenes use into plain data, for the peers' workers."""
+"""Reads the part of the scene format that other renderers have too into plain data, for the peers' workers."""
 
 import base64
 import json
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,32 @@ import numpy as np
 
 class Unsupported(Exception):
     pass
+
+
+@dataclass
+class Mesh:
+    positions: np.ndarray  # n x 3, m
+    triangles: np.ndarray  # n x 3, indices
+    normals: np.ndarray | None  # n x 3 unit vectors to shade with; None: those of the triangles
+    material: dict
+
+
+@dataclass
+class Sphere:
+    centre: list
+    radius: float
+    material: dict
+
+    def mesh(self, columns=256, rows=128):
+        """For renderers without spheres: inside the sphere by 8e-5 of the radius at most."""
+        u, v = np.meshgrid(np.arange(columns) * 2 * np.pi / columns, np.arange(rows + 1) * np.pi / rows)
+        normals = np.stack([np.sin(v) * np.cos(u), np.sin(v) * np.sin(u), np.cos(v)], -1).reshape(-1, 3)
+        column, row = np.meshgrid(np.arange(columns), np.arange(rows))
+        a, b = row * columns + column, row * columns + (column + 1) % columns
+        below = np.stack([a, a + columns, b + columns], -1)[:-1]  # without those of no area at the poles
+        above = np.stack([a, b + columns, b], -1)[1:]
+        triangles = np.concatenate([below.reshape(-1, 3), above.reshape(-1, 3)]).astype(np.uint32)
+        return Mesh(np.array(self.centre) + self.radius * normals, triangles, normals, self.material)
 
 
 def _rgb(value):
@@ -22,31 +49,60 @@ def _rgb(value):
 def _matrix(node):
     if "matrix" in node:
         return np.array(node["matrix"], float).reshape(4, 4).T
-    if "rotation" in node:
-        raise Unsupported("a node with a rotation")
-    m = np.diag([*node.get("scale", [1, 1, 1]), 1.0])
+    x, y, z, w = node.get("rotation", [0, 0, 0, 1])
+    rotation = np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+    m = np.eye(4)
+    m[:3, :3] = rotation * node.get("scale", [1, 1, 1])
     m[:3, 3] = node.get("translation", [0, 0, 0])
     return m
 
 
+SURFACES = {
+    "lambertian": {"reflectance"},
+    "conductor": {"reflectance", "eta", "k", "alpha", "multiscatter"},
+    "dielectric": {"alpha", "multiscatter"},
+}
+
+
 def _material(gltf, material):
+    name = material.get("name")
     optics = material.get("extensions", {}).get("ETD_optics", {})
     if "surface" not in optics or set(optics) - {"surface", "inside"}:
-        raise Unsupported(f"the material '{material.get('name')}'")
+        raise Unsupported(f"the material '{name}'")
     surface = dict(optics["surface"])
+    if surface["class"] not in SURFACES:
+        raise Unsupported(f"the surface '{surface['class']}'")
+    if unknown := set(surface) - SURFACES[surface["class"]] - {"class"}:
+        raise Unsupported(f"'{unknown.pop()}' of the material '{name}'")
+    if surface.get("multiscatter"):
+        raise Unsupported("multiscatter")
     for key in ("reflectance", "eta", "k"):
         if key in surface:
             surface[key] = _rgb(surface[key])
+    if surface["class"] == "lambertian":
+        surface.setdefault("reflectance", [0.5] * 3)
+    surface.setdefault("alpha", 0.0)
+    surface["ior"] = 1.0
     if "inside" in optics:
         media = {m["name"]: m for m in gltf["extensions"]["ETD_optics"]["media"]}
         inside = media[optics["inside"]]
         if set(inside) - {"name", "class", "ior"}:
             raise Unsupported(f"the medium '{inside['name']}'")
         surface["ior"] = inside.get("ior", 1.0)
+    elif surface["class"] == "dielectric":
+        raise Unsupported(f"the material '{name}' without a medium inside")
     strength = (
         material.get("extensions", {}).get("KHR_materials_emissive_strength", {}).get("emissiveStrength", 1.0)
     )
     surface["emission"] = [strength * x for x in material.get("emissiveFactor", [0, 0, 0])]
+    if max(surface["emission"]) > 0 and material.get("doubleSided"):
+        raise Unsupported(f"the material '{name}', which emits on both sides")
     return surface
 
 
@@ -62,8 +118,38 @@ def _accessor(gltf, index):
     return np.frombuffer(data, dtype, accessor["count"] * width, start).reshape(-1, width)
 
 
+def _mesh(gltf, primitive, m, materials):
+    attributes = primitive["attributes"]
+    positions = _accessor(gltf, attributes["POSITION"]) @ m[:3, :3].T + m[:3, 3]
+    normals = None
+    if "NORMAL" in attributes:
+        normals = _accessor(gltf, attributes["NORMAL"]) @ np.linalg.inv(m[:3, :3])
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    if "indices" in primitive:
+        triangles = _accessor(gltf, primitive["indices"]).reshape(-1, 3).astype(np.uint32)
+    else:
+        triangles = np.arange(len(positions), dtype=np.uint32).reshape(-1, 3)
+    return Mesh(positions, triangles, normals, materials[primitive["material"]])
+
+
+def _shape(geometry, m, materials):
+    material = materials[geometry["material"]]
+    if geometry["class"] == "sphere":
+        scale = np.linalg.norm(m[:3, :3], axis=0)
+        if scale.max() - scale.min() > 1e-6 * scale.max():
+            raise Unsupported("a sphere that is scaled unevenly")
+        return Sphere(m[:3, 3].tolist(), float(geometry["radius"] * scale[0]), material)
+    if geometry["class"] == "rectangle":
+        x, y = m[:3, 0] * geometry["size"][0] / 2, m[:3, 1] * geometry["size"][1] / 2
+        corners = m[:3, 3] + np.array([-x - y, x - y, x + y, y - x])
+        return Mesh(corners, np.array([[0, 1, 2], [0, 2, 3]], np.uint32), None, material)
+    raise Unsupported(f"the geometry '{geometry['class']}'")
+
+
 def load(path):
-    """meshes [(positions, triangles, material)], spheres [(centre, radius, material)], camera, environment."""
+    """meshes, spheres, camera {matrix, yfov}, environment (radiance or None). The camera is the first."""
+    if Path(path).suffix != ".gltf":
+        raise Unsupported("files that are not .gltf")
     gltf = json.loads(Path(path).read_text(encoding="utf-8"))
     materials = [_material(gltf, m) for m in gltf["materials"]]
     scene = {"meshes": [], "spheres": [], "camera": None, "environment": None}
@@ -72,27 +158,38 @@ def load(path):
         if environment["class"] != "constant":
             raise Unsupported(f"the environment '{environment['class']}'")
         scene["environment"] = _rgb(environment["radiance"])
-    for node in (gltf["nodes"][i] for i in gltf["scenes"][gltf.get("scene", 0)]["nodes"]):
-        m = _matrix(node)
-        geometry = node.get("extensions", {}).get("ETD_optics", {}).get("geometry")
-        if node.get("children") or (geometry and geometry["class"] != "sphere"):
+
+    def visit(index, parent):
+        node = gltf["nodes"][index]
+        m = parent @ _matrix(node)
+        extensions = node.get("extensions", {})
+        optics = extensions.get("ETD_optics", {})
+        if set(extensions) - {"ETD_optics"} or set(optics) - {"geometry"}:
             raise Unsupported(f"the node '{node.get('name')}'")
-        if geometry:
-            scene["spheres"].append((m[:3, 3].tolist(), geometry["radius"], materials[geometry["material"]]))
+        if "geometry" in optics:
+            shape = _shape(optics["geometry"], m, materials)
+            scene["spheres" if isinstance(shape, Sphere) else "meshes"].append(shape)
         for primitive in gltf["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
-            positions = _accessor(gltf, primitive["attributes"]["POSITION"]) @ m[:3, :3].T + m[:3, 3]
-            triangles = _accessor(gltf, primitive["indices"]).reshape(-1, 3).astype(np.uint32)
-            scene["meshes"].append((positions, triangles, materials[primitive["material"]]))
-        if "camera" in node:
-            perspective = gltf["cameras"][node["camera"]]["perspective"]
-            scene["camera"] = {"matrix": m, "yfov": perspective["yfov"]}
+            scene["meshes"].append(_mesh(gltf, primitive, m, materials))
+        if "camera" in node and scene["camera"] is None:
+            camera = gltf["cameras"][node["camera"]]
+            if camera["type"] != "perspective":
+                raise Unsupported("an orthographic camera")
+            scene["camera"] = {"matrix": m, "yfov": camera["perspective"]["yfov"]}
+        for child in node.get("children", []):
+            visit(child, m)
+
+    for root in gltf["scenes"][gltf.get("scene", 0)]["nodes"]:
+        visit(root, np.eye(4))
+    if scene["camera"] is None:
+        raise Unsupported("a scene without a camera")
     return scene
 
 
-def as_quad(positions, triangles):
+def as_quad(mesh):
     """The four corners where a mesh is one parallelogram of two triangles, else None."""
-    if len(positions) == 4 and triangles.tolist() == [[0, 1, 2], [0, 2, 3]]:
-        p = positions
+    if len(mesh.positions) == 4 and mesh.triangles.tolist() == [[0, 1, 2], [0, 2, 3]]:
+        p = mesh.positions
         if np.abs(p[0] + p[2] - p[1] - p[3]).max() <= 1e-5 * np.abs(p - p[0]).max():
             return p
     return None

@@ -9,13 +9,16 @@ import numpy as np
 
 
 def arguments():
-    """SCENE WIDTH HEIGHT THREADS"""
-    scene, width, height, threads = sys.argv[1:5]
-    return SimpleNamespace(scene=scene, width=int(width), height=int(height), threads=int(threads))
+    """SCENE WIDTH HEIGHT THREADS ENGINE"""
+    scene, width, height, threads, engine = sys.argv[1:6]
+    return SimpleNamespace(
+        scene=scene, width=int(width), height=int(height), threads=int(threads), engine=engine
+    )
 
 
 def serve(start):
-    """`start(arguments)` returns (description, render) with render(samples, seed) -> (image, seconds, samples done).
+    """`start(arguments)` returns (description, least, render) with render(samples, seed) -> (image, seconds), where
+    seconds are of rendering alone; `least` is the smallest number of samples a pixel that it does well.
 
     Requests and replies are JSON lines on stdin and stdout; what the peer itself prints goes to stderr.
     """
@@ -26,18 +29,18 @@ def serve(start):
         replies.write(json.dumps(values) + "\n")
 
     try:
-        description, render = start(arguments())
+        description, least, render = start(arguments())
     except Exception as e:  # whatever a peer does not have or cannot do is a line in the report
         reply(error=f"{type(e).__name__}: {e}".splitlines()[0])
         return
-    reply(ready=description)
+    reply(ready=description, least=least)
     for line in sys.stdin:
         request = json.loads(line)
         try:
-            image, seconds, samples = render(request["samples"], request["seed"])
+            image, seconds = render(request["samples"], request["seed"])
         except Exception as e:
             reply(error=f"{type(e).__name__}: {e}".splitlines()[0])
             continue
         np.save(request["file"], np.asarray(image, np.float32))
-        reply(seconds=seconds, samples=samples)
+        reply(seconds=seconds)
     os._exit(0)  # some peers crash while they are unloaded
