@@ -19,6 +19,7 @@ import csv
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -98,7 +99,13 @@ def find_llvm():
 def run_bench(a, cores, arguments, **options):
     command = ["taskset", "-c", cores, a.etendue, "bench", *map(str, arguments)]
     threads = {"LP_NUM_THREADS": str(cores.count(",") + 1)}
-    return subprocess.run(command, env=os.environ | threads, **options).returncode
+    before = signal.signal(
+        signal.SIGINT, lambda *_: None
+    )  # Ctrl-C is for the bench, which then ends by itself
+    try:
+        return subprocess.run(command, env=os.environ | threads, **options).returncode
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 class Engine:
@@ -118,6 +125,7 @@ class Engine:
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
+            start_new_session=True,  # Ctrl-C is for this script
             env=os.environ | ({"DRJIT_LIBLLVM_PATH": str(llvm)} if llvm else {}),
         )
         ready = self._reply()
@@ -143,6 +151,8 @@ class Engine:
         return np.load(self.file), seconds
 
     def close(self):
+        if self.process.poll() is not None:
+            return
         self.process.stdin.close()
         try:
             self.process.wait(10)
@@ -189,7 +199,7 @@ def measure_round(engine, reference, first, seconds, seed):
 
 
 def measure_all(engines, reference, seconds, seed):
-    """Fills the engines' points; returns {name: why it failed}."""
+    """Fills the engines' points, until interrupted; returns ({name: why it failed}, whether it was)."""
     failed = {}
     for turn in range(8):
         for engine in [e for e in engines if e.name not in failed]:
@@ -200,7 +210,12 @@ def measure_all(engines, reference, seconds, seed):
                     measure_round(engine, reference, turn == 0, seconds, seed)
             except (RuntimeError, BrokenPipeError) as e:
                 failed[engine.name] = str(e)
-    return failed
+            except KeyboardInterrupt:
+                note("stopping; what was measured so far is written")
+                for other in engines:
+                    other.process.kill()
+                return failed | {e.name: "interrupted" for e in engines if not e.points}, True
+    return failed, False
 
 
 def mean_of_biases(points):
@@ -286,7 +301,7 @@ def compare(a, scene, cores):
                 except (RuntimeError, OSError) as e:
                     notes.append(f"{label}: left out: {e}")
                     note(notes[-1])
-        failed = measure_all(engines, reference, a.time, a.seed)
+        failed, interrupted = measure_all(engines, reference, a.time, a.seed)
         for engine in engines:
             engine.close()
     notes.append(
@@ -295,6 +310,8 @@ def compare(a, scene, cores):
     add_results(folder, name, engines, failed, reference, notes)
     run_bench(a, cores, ["-o", folder])
     print(f"{folder / 'index.html'}\n", flush=True)
+    if interrupted:
+        sys.exit(130)
 
 
 def main():

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/image/compare.h"
 #include "host/interrupt.h"
 
 namespace etendue {
@@ -28,7 +29,7 @@ std::optional<double> render(Renderer& renderer, uint32_t seed, uint64_t passes,
         renderer.render_passes(uint32_t(std::min<uint64_t>(renderer.passes_in(batch_seconds), left)));
         const RenderCounters& c = renderer.counters();
         status.passes = renderer.passes();
-        status.rays = double(c.rays + c.shadow_rays);
+        status.rays = double(c.rays + c.shadow_rays + c.forward_rays + c.forward_shadow_rays);
         status.seconds = renderer.seconds() - before;
         show_progress(progress, status);
     }
@@ -36,47 +37,73 @@ std::optional<double> render(Renderer& renderer, uint32_t seed, uint64_t passes,
     return renderer.seconds() - before;
 }
 
-// The most complete comes first: what a backward or a forward path alone cannot find, no image of them shows,
-// nor does their estimate of the error.
-Contestant& most_complete(std::vector<Contestant>& contestants) {
-    for (const Algorithm algorithm :
-         {Algorithm::bidirectional, Algorithm::backward, Algorithm::automatic, Algorithm::forward})
-        for (Contestant& contestant : contestants)
-            if (contestant.algorithm == algorithm) return contestant;
-    return contestants.front();
+struct Trial {
+    Image image;
+    uint64_t passes = 1;
+    double seconds = 0;
+    double cost() const { return std::pow(estimated_relative_error(image), 2) * seconds; }
+};
+
+// A render that takes at least `seconds`, with numbers of passes tried from 1. nullopt where interrupted.
+std::optional<Trial> try_out(Renderer& renderer, double seconds, uint32_t seed, Progress& progress) {
+    Trial trial;
+    for (;; trial.passes *= 2) {
+        const auto took = render(renderer, seed, trial.passes, progress);
+        if (!took) return std::nullopt;
+        trial.seconds = *took;
+        if (*took >= seconds && trial.passes >= 4) break;
+    }
+    trial.image = renderer.develop();
+    trial.image.attributes["passes"] = double(trial.passes);
+    return trial;
+}
+
+Contestant* find(std::vector<Contestant>& contestants, Algorithm algorithm) {
+    for (Contestant& contestant : contestants)
+        if (contestant.algorithm == algorithm) return &contestant;
+    return nullptr;
 }
 
 }  // namespace
 
 std::optional<Reference> render_reference(std::vector<Contestant>& contestants, double seconds, uint32_t seed,
                                           Progress& progress) {
-    Contestant& best = most_complete(contestants);
-    const char* name = algorithm_name(best.algorithm);
-    show_note(progress, fmt::format("reference: {}, about {:.3g} s", name, seconds));
-    // The largest power of two that two halves have the time for, by the speed of a short render.
-    uint64_t passes = 1;
-    double took = 0;
-    do {
-        const auto trial = render(*best.renderer, seed + reference_seeds, passes, progress);
-        if (!trial) return std::nullopt;
-        took = *trial;
-        if (took < 0.02 * seconds) passes *= 2;
-    } while (took < 0.02 * seconds);
-    const double room = 0.5 * seconds / (took / double(passes));
-    passes = uint64_t(1) << int(std::log2(std::max(1.0, room)));
+    // What backward or forward paths alone cannot find shows neither in their images nor in their estimates
+    // of the error: bidirectional ones come first, and give way to backward ones only where these show the
+    // same with less noise.
+    const double trial_seconds = 0.05 * seconds;
+    Contestant* chosen = find(contestants, Algorithm::bidirectional);
+    Contestant* backward = find(contestants, Algorithm::backward);
+    for (const Algorithm algorithm : {Algorithm::backward, Algorithm::automatic, Algorithm::forward})
+        if (!chosen) chosen = find(contestants, algorithm);
+    show_note(progress, fmt::format("reference: about {:.3g} s", seconds));
+    auto trial = try_out(*chosen->renderer, trial_seconds, seed + reference_seeds, progress);
+    if (trial && backward && chosen->algorithm == Algorithm::bidirectional) {
+        auto other = try_out(*backward->renderer, trial_seconds, seed + reference_seeds + 3, progress);
+        if (!other) return std::nullopt;
+        const auto test = compare_images(other->image, trial->image).tile_test;
+        if (test && test->passes && other->cost() < trial->cost())
+            chosen = backward, trial = std::move(other);
+    }
+    if (!trial) return std::nullopt;
+    const char* name = algorithm_name(chosen->algorithm);
+    // The largest power of two that two halves have the time for.
+    const double room = 0.5 * seconds / (trial->seconds / double(trial->passes));
+    const uint64_t passes = uint64_t(1) << int(std::log2(std::max(1.0, room)));
     Image halves[2];
     double all_seconds = 0;
     for (uint32_t i = 0; i < 2; ++i) {
-        const auto half = render(*best.renderer, seed + reference_seeds + 1 + i, passes, progress);
+        const auto half = render(*chosen->renderer, seed + reference_seeds + 1 + i, passes, progress);
         if (!half) return std::nullopt;
         all_seconds += *half;
-        halves[i] = best.renderer->develop();
+        halves[i] = chosen->renderer->develop();
     }
     Reference reference = average_reference(halves[0], halves[1]);
     reference.origin =
         fmt::format("rendered {} with seeds {} and {}, 2 × {} passes in {:.3g} s", name,
                     seed + reference_seeds + 1, seed + reference_seeds + 2, passes, all_seconds);
-    show_note(progress, fmt::format("reference: 2 × {} passes, own relMSE {:.2g}", passes, reference.relmse));
+    show_note(progress,
+              fmt::format("reference: {}, 2 × {} passes, own relMSE {:.2g}", name, passes, reference.relmse));
     return reference;
 }
 
@@ -93,7 +120,8 @@ void measure_contestants(std::vector<Contestant>& contestants, const Reference& 
         c.seconds += *took;
         point.seconds = *took;
         const RenderCounters& counters = c.renderer->counters();
-        point.rays_backward = counters.rays, point.rays_shadow = counters.shadow_rays;
+        point.rays_backward = counters.rays, point.rays_forward = counters.forward_rays;
+        point.rays_shadow = counters.shadow_rays + counters.forward_shadow_rays;
         Image image = c.renderer->develop();
         compare_with_reference(image, reference, point);
         if (passes > c.longest) c.image = std::move(image), c.longest = passes;

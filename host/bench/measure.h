@@ -19,8 +19,9 @@ struct Contestant {
     double seconds = 0;  // of rendering, of all renders
 };
 
-// Renders one reference by the most complete algorithm there is, in about `seconds`, with seeds of its own:
-// the mean of two independent halves. nullopt where it was interrupted.
+// Renders a reference in about `seconds`, with seeds of its own: the mean of two independent halves.
+// Bidirectional where that is among the contestants, unless backward paths show the same with less noise.
+// nullopt where it was interrupted.
 std::optional<Reference> render_reference(std::vector<Contestant>& contestants, double seconds, uint32_t seed,
                                           Progress& progress);
 

@@ -114,8 +114,8 @@ TEST_CASE("an interrupted bench writes the results so far and ends with 130") {
     write_text(program.folder / "s.gltf", small_scene());
     REQUIRE(program.run({"render", "s.gltf", "-o", "r.exr", "--size", "16x8", "--passes", "64", "-q"}).code ==
             0);
-    const pid_t child =
-        program.start({"bench", "s.gltf", "-o", "out", "--reference", "r.exr", "--time", "600"});
+    const pid_t child = program.start({"bench", "s.gltf", "-o", "out", "--reference", "r.exr", "--time",
+                                       "600", "--algorithms", "backward"});
     const auto csv = program.folder / "out/bench.csv";
     for (int i = 0; i < 1200 && !std::filesystem::exists(csv); ++i) usleep(100000);
     kill(child, SIGINT);

@@ -104,7 +104,7 @@ def start(a):
 
     return (
         f"LuxCore {lux.Version()} {a.engine}",
-        8 if a.engine == "BIDIRVMCPU" else 1,
+        16 if a.engine == "BIDIRVMCPU" else 1,
         render,
     )  # its first passes are too dark
 
