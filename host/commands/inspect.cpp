@@ -55,8 +55,14 @@ int inspect_command(const InspectOptions& options) {
     if (chosen) {
         RenderSettings settings;
         settings.receiver = chosen->ref;
+        settings.width = image_size(*chosen, options).width;
+        settings.height = image_size(*chosen, options).height;
         const Renderer renderer(*opened.device, scene, settings);
-        fmt::print("algorithm  backward, {} schedule\n", schedule_name(renderer.schedule()));
+        const AlgorithmChoice& choice = renderer.choice();
+        fmt::print("algorithm  {}, {} schedule: {}\n", algorithm_name(choice.algorithm),
+                   schedule_name(renderer.schedule()), choice.reason);
+        if (choice.algorithm == Algorithm::bidirectional)
+            fmt::print("           {} forward paths a pixel and pass\n", choice.forward_paths);
     }
     fmt::print("kernels\n");
     for (const KernelReport& k : scene.kernels)

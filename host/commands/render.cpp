@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "host/commands/open_scene.h"
+#include "host/commands/stats.h"
 #include "host/error.h"
 #include "host/image/atomic_file.h"
 #include "host/image/checkpoint.h"
@@ -44,68 +45,8 @@ nlohmann::json checkpoint_identity(const RenderOptions& options, const Scene& sc
             {"size", fmt::format("{}x{}", size.width, size.height)},
             {"receiver", receiver.name},
             {"seed", options.seed},
+            {"algorithm", algorithm_name(options.algorithm)},
             {"device", device.description.name + " " + device.description.driver}};
-}
-
-nlohmann::json stats(const RenderOptions& options, const Device& device, const Scene& scene,
-                     const Renderer& renderer, double error, double setup_seconds) {
-    nlohmann::json kernels = nlohmann::json::array(), timings = nlohmann::json::object();
-    double compile_seconds = 0;
-    for (const KernelReport& k : scene.kernels) {
-        kernels.push_back({{"name", k.name},
-                           {"from_cache", k.from_cache},
-                           {"seconds", k.seconds},
-                           {"spirv_bytes", k.spirv_bytes}});
-        compile_seconds += k.seconds;
-    }
-    const RenderCounters& c = renderer.counters();
-    for (const auto& [name, t] : renderer.timings())
-        timings[name] = {
-            {"seconds", t.seconds},
-            {"dispatches", t.dispatches},
-            {"rays_per_second", t.seconds > 0 ? double(c.rays + c.shadow_rays) / t.seconds : 0.0}};
-    // Backward rays carry importance: 1 a path. What leaves the scene is received by its surroundings; what
-    // is neither received nor lost was absorbed.
-    const double paths = double(renderer.passes()) * options.size->width * options.size->height;
-    nlohmann::json balance = {
-        {"unit", "share of the importance that the receiver sent out"},
-        {"emitted", 1.0},
-        {"received", c.escaped / paths},
-        {"absorbed", 1.0 - (c.escaped + c.depth_limit_lost) / paths},
-        {"lost",
-         {{"depth_limit", c.depth_limit_lost / paths}, {"non_finite", double(c.non_finite) / paths}}}};
-    return {{"scene", options.scene.string()},
-            {"command", options.command_line},
-            {"version", ETENDUE_VERSION},
-            {"device", device.description.name},
-            {"driver", device.description.driver},
-            {"seed", options.seed},
-            {"width", options.size->width},
-            {"height", options.size->height},
-            {"passes", renderer.passes()},
-            {"backward_rays", c.rays},
-            {"shadow_rays", c.shadow_rays},
-            {"forward_rays", 0},
-            {"seconds", renderer.seconds()},
-            {"setup_seconds", setup_seconds},
-            {"rays_per_second",
-             renderer.seconds() > 0 ? double(c.rays + c.shadow_rays) / renderer.seconds() : 0.0},
-            {"estimated_relative_error", std::isfinite(error) ? nlohmann::json(error) : nlohmann::json()},
-            {"algorithm", "backward"},
-            {"schedule", schedule_name(renderer.schedule())},
-            {"kernels", timings},
-            {"compiled_kernels", kernels},
-            {"compile_seconds", compile_seconds},
-            {"driver_compile_seconds", renderer.warm_up_seconds()},
-            {"peak_device_memory_bytes", device.peak_bytes_allocated},
-            {"light_power_lm", scene.power},
-            {"power_balance", balance},
-            {"non_finite_samples", c.non_finite}};
-}
-
-void write_stats(const std::filesystem::path& path, const nlohmann::json& json) {
-    const std::string text = json.dump(2) + "\n";
-    write_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
 void save_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity,
@@ -115,12 +56,12 @@ void save_checkpoint(const std::filesystem::path& path, const nlohmann::json& id
     checkpoint.identity = identity;
     checkpoint.passes = film.passes;
     checkpoint.counters = to_json(film.counters);
+    checkpoint.counters["choice"] = to_json(renderer.choice());
     checkpoint.arrays.push_back({"film", std::move(film.pixels)});
     write_checkpoint(path, checkpoint);
 }
 
-void load_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity, Renderer& renderer) {
-    const Checkpoint checkpoint = read_checkpoint(path, identity);
+void restore(const Checkpoint& checkpoint, const std::filesystem::path& path, Renderer& renderer) {
     FilmState film = renderer.state();
     film.pixels = checkpoint_array(checkpoint, path, "film", film.pixels.size());
     film.passes = checkpoint.passes;
@@ -156,18 +97,23 @@ int render_command(const RenderOptions& given) {
     settings.schedule = options.schedule;
     settings.vertex_bytes = options.vertex_bytes;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
-    Renderer renderer(device, scene, settings);
     nlohmann::json identity;
     if (!options.checkpoint.empty() || !options.resume.empty())
         identity = checkpoint_identity(options, scene, *options.size, receiver, device);
-    if (!options.resume.empty()) load_checkpoint(options.resume, identity, renderer);
+    std::optional<Checkpoint> resumed;
+    if (!options.resume.empty()) {
+        resumed = read_checkpoint(options.resume, identity);
+        settings.choice = choice_from_json(resumed->counters.at("choice"));
+    }
+    Renderer renderer(device, scene, settings);
+    if (resumed) restore(*resumed, options.resume, renderer);
     const double setup_seconds = seconds_since(start);
 
     RenderStatus status;
     status.passes_goal = options.passes, status.seconds_goal = options.seconds,
     status.error_goal = options.error;
     status.passes_before = renderer.passes();
-    const uint64_t rays_before = renderer.counters().rays + renderer.counters().shadow_rays;
+    const uint64_t rays_before = all_rays(renderer.counters());
     const auto render_start = Clock::now();
     double next_checkpoint = checkpoint_seconds, next_estimate = 0;
     bool done = options.passes && renderer.passes() >= *options.passes;
@@ -179,7 +125,7 @@ int render_command(const RenderOptions& given) {
         renderer.render_passes(count);
         status.passes = renderer.passes();
         status.seconds = seconds_since(render_start);
-        status.rays = double(renderer.counters().rays + renderer.counters().shadow_rays - rays_before);
+        status.rays = double(all_rays(renderer.counters()) - rays_before);
         // Developing the film costs time: as often as it takes a tenth of the work at most.
         if (options.error && status.seconds >= next_estimate) {
             const auto begin = Clock::now();
@@ -205,15 +151,16 @@ int render_command(const RenderOptions& given) {
                         {"command", options.command_line},
                         {"seed", double(options.seed)},
                         {"passes", double(renderer.passes())},
-                        {"rays", double(renderer.counters().rays + renderer.counters().shadow_rays)},
+                        {"rays", double(all_rays(renderer.counters()))},
                         {"seconds", renderer.seconds()},
+                        {"algorithm", std::string(algorithm_name(renderer.choice().algorithm))},
                         {"device", device.description.name},
                         {"driver", device.description.driver},
                         {"version", std::string(ETENDUE_VERSION)}};
     if (!options.aovs) remove_channels(image, "error.");
     write_exr(options.output, image);
     if (!options.stats.empty())
-        write_stats(options.stats, stats(options, device, scene, renderer, error, setup_seconds));
+        write_stats(options.stats, options, device, scene, renderer, error, setup_seconds);
     if (renderer.counters().non_finite)
         show_note(progress, fmt::format("warning: {} samples were not finite and count as black",
                                         renderer.counters().non_finite));

@@ -30,7 +30,7 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
       techniques_(techniques),
       power_(scene.power),
       radius_(scene.radius),
-      count_(settings.width * settings.height),
+      count_(uint32_t(std::clamp(settings.forward_paths * settings.width * settings.height, 1.0, double(1 << 24)))),
       pass_(device, sizeof(ForwardPass), "ForwardPassTable"),
       splats_(device, uint64_t(settings.width) * settings.height * 24, "Splats") {
     splats_.fill(0);
@@ -86,13 +86,13 @@ void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, Ker
         if (counts.wanted == counts.stored) break;
         count_ = std::max(1u, uint32_t(0.9 * count_ * counts.stored / counts.wanted));
         splats_.fill(0);
+        splits_++;
     }
     if (techniques_.merge && expected_vertices_ > 0) vertices_->build(commands, expected_vertices_);
 }
 
 void ForwardRays::restart() {
     splats_.fill(0);
-    paths_ = 0;
 }
 
 void ForwardRays::warm_up(CommandList& commands) {

@@ -2,6 +2,7 @@
 // backward paths connect to and merge with.
 #pragma once
 #include <optional>
+#include <utility>
 
 #include "host/render/renderer.h"
 #include "host/render/techniques.h"
@@ -24,7 +25,9 @@ class ForwardRays {
     // repeated with fewer paths, and so are all that follow.
     void trace(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings);
     void warm_up(CommandList& commands);
-    uint64_t paths() const { return paths_; }  // traced so far
+    // Paths traced, and passes that were repeated with fewer, since the last call.
+    uint64_t take_paths() { return std::exchange(paths_, 0); }
+    uint64_t take_splits() { return std::exchange(splits_, 0); }
     void restart();
 
   private:
@@ -34,7 +37,7 @@ class ForwardRays {
     double power_;   // of all lights, lm
     float radius_;   // m, of the scene
     uint32_t count_;  // forward paths a pass
-    uint64_t paths_ = 0;
+    uint64_t paths_ = 0, splits_ = 0;
     uint32_t expected_vertices_ = 0;
     Buffer pass_, splats_, path_ends_;
     std::optional<VertexMap> vertices_;  // where vertices are connected or merged

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/error.h"
+#include "host/render/automatic.h"
 #include "host/render/pipelines.h"
 
 namespace etendue {
@@ -31,6 +32,7 @@ void visit_counters(Counters& c, Visit visit) {
     visit("forward_shadow_rays", c.forward_shadow_rays);
     visit("forward_non_finite", c.forward_non_finite);
     visit("forward_depth_limit", c.forward_depth_limit);
+    visit("split_passes", c.split_passes);
     visit("emitted", c.emitted);
     visit("absorbed", c.absorbed);
     visit("forward_escaped", c.forward_escaped);
@@ -39,6 +41,27 @@ void visit_counters(Counters& c, Visit visit) {
 }
 
 }  // namespace
+
+nlohmann::json to_json(const AlgorithmChoice& c) {
+    return {{"algorithm", algorithm_name(c.algorithm)},
+            {"forward_paths", c.forward_paths},
+            {"reason", c.reason},
+            {"pilot_seconds", c.pilot_seconds}};
+}
+
+AlgorithmChoice choice_from_json(const nlohmann::json& json) {
+    AlgorithmChoice c;
+    for (const Algorithm a : {Algorithm::backward, Algorithm::forward, Algorithm::bidirectional})
+        if (json.at("algorithm") == algorithm_name(a)) c.algorithm = a;
+    c.forward_paths = json.at("forward_paths");
+    c.reason = json.at("reason");
+    c.pilot_seconds = json.at("pilot_seconds");
+    return c;
+}
+
+uint64_t all_rays(const RenderCounters& c) {
+    return c.rays + c.shadow_rays + c.forward_rays + c.forward_shadow_rays;
+}
 
 nlohmann::json to_json(const RenderCounters& counters) {
     nlohmann::json json;
@@ -78,6 +101,13 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     BufferTable film = film_.buffers();
     film["CounterSums"] = &counter_sums_;
     if (schedule_ == Schedule::automatic) schedule_ = choose_schedule(scene);
+    choice_ = {settings.algorithm, settings.forward_paths, "asked for", 0};
+    if (settings.choice)
+        choice_ = *settings.choice;
+    else if (settings.algorithm == Algorithm::automatic)
+        choice_ = choose_algorithm(device, scene, settings);
+    settings_.algorithm = choice_.algorithm;
+    settings_.forward_paths = choice_.forward_paths;
     const Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
     if (techniques.forward) {
         schedule_ = Schedule::fused;
@@ -132,7 +162,8 @@ void Renderer::read_counters() {
     counters_.escaped += sums.flux_sum(0);
     counters_.depth_limit_lost += sums.flux_sum(1);
     if (!forward_) return;
-    counters_.forward_paths = forward_->paths();
+    counters_.forward_paths += forward_->take_paths();
+    counters_.split_passes += forward_->take_splits();
     counters_.forward_rays += sums.counts[4];
     counters_.forward_shadow_rays += sums.counts[5];
     counters_.forward_non_finite += sums.counts[6];

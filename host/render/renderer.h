@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,24 @@ namespace etendue {
 
 class ForwardRays;
 
+// What --algorithm auto has come to, or what was asked for.
+struct AlgorithmChoice {
+    Algorithm algorithm = Algorithm::backward;
+    double forward_paths = 1;  // a pixel and pass
+    std::string reason;
+    double pilot_seconds = 0;  // that it took to find out
+};
+nlohmann::json to_json(const AlgorithmChoice& choice);
+AlgorithmChoice choice_from_json(const nlohmann::json& json);
+
 struct RenderSettings {
     uint32_t width = 512, height = 512;
     uint32_t receiver = no_record;  // RecordRef
     uint32_t seed = 0;
     Algorithm algorithm = Algorithm::automatic;
     Schedule schedule = Schedule::automatic;
+    double forward_paths = 1;  // a pixel and pass, where there are any
+    std::optional<AlgorithmChoice> choice;  // of an earlier run: taken instead of algorithm and forward_paths
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
     uint64_t binding_bytes = 0;  // a larger film is written through its address; 0 = what the device can bind
 };
@@ -36,9 +49,11 @@ struct RenderCounters {
     // Forward paths: their flux in units of the mean, so that each emits about 1.
     uint64_t forward_paths = 0, forward_rays = 0, forward_shadow_rays = 0, forward_non_finite = 0,
              forward_depth_limit = 0;
+    uint64_t split_passes = 0;  // whose forward vertices did not fit, and that went on with fewer paths
     double emitted = 0, absorbed = 0, forward_escaped = 0, forward_depth_limit_lost = 0;
     double roulette = 0;  // what Russian roulette took, less what it gave to the survivors
 };
+uint64_t all_rays(const RenderCounters& counters);
 nlohmann::json to_json(const RenderCounters& counters);
 RenderCounters counters_from_json(const nlohmann::json& json);
 
@@ -69,6 +84,7 @@ class Renderer {
     double seconds() const { return seconds_; }                  // in render_passes
     double warm_up_seconds() const { return warm_up_seconds_; }  // that the driver took to finish compiling
     Schedule schedule() const { return schedule_; }
+    const AlgorithmChoice& choice() const { return choice_; }
 
     Image develop() const { return film_.develop(); }
     // Adds albedo.RGB, normal.XYZ and depth.Z of what the pixels see, by `count` primary rays a pixel.
@@ -84,6 +100,7 @@ class Renderer {
     void read_counters();
     Device& device_;
     Scene& scene_;
+    AlgorithmChoice choice_;
     RenderSettings settings_;
     Schedule schedule_;
     Film film_;

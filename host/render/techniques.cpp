@@ -22,24 +22,41 @@ std::string Techniques::forward_defines() const {
         bidirectional, connect, merge);
 }
 
-bool find_narrow_materials(Device& device, Scene& scene) {
-    const uint32_t count = uint32_t(scene.materials);
-    if (count == 0) return false;
-    const Buffer lobes(device, count * 4, "MaterialLobes");
-    const Kernel kernel =
-        make_kernel(device, scene, "kernels/measure_lobes.comp", {{"MaterialLobes", &lobes}});
+namespace {
+
+// Runs a kernel that answers a question for each of `count` items with one word.
+std::vector<uint32_t> ask(Device& device, Scene& scene, const std::string& file, const std::string& answers,
+                          uint32_t count) {
+    const Buffer buffer(device, uint64_t(count) * 4, answers);
+    const Kernel kernel = make_kernel(device, scene, file, {{answers, &buffer}});
     CommandList commands(device);
-    for (uint32_t first = 0; first < count; first += max_groups * kernel.group_size())
-        commands.dispatch(kernel, std::min((count - first - 1) / kernel.group_size() + 1, max_groups),
-                          {{"first", first}, {"count", count}});
+    for (uint64_t first = 0; first < count; first += uint64_t(max_groups) * kernel.group_size())
+        commands.dispatch(kernel,
+                          std::min((count - uint32_t(first) - 1) / kernel.group_size() + 1, max_groups),
+                          {{"first", uint32_t(first)}, {"count", count}});
     commands.run();
-    const auto narrow = lobes.read_array<uint32_t>(count);
+    return buffer.read_array<uint32_t>(count);
+}
+
+}  // namespace
+
+bool find_narrow_materials(Device& device, Scene& scene) {
+    if (scene.materials == 0) return false;
+    const auto narrow = ask(device, scene, "kernels/measure_lobes.comp", "MaterialLobes",
+                            uint32_t(scene.materials));
     Buffer& buffer = scene.buffers.at("Materials");
-    auto materials = buffer.read_array<MaterialRecord>(count);
-    for (uint32_t i = 0; i < count; ++i)
+    auto materials = buffer.read_array<MaterialRecord>(scene.materials);
+    for (size_t i = 0; i < narrow.size(); ++i)
         if (narrow[i]) materials[i].flags |= MaterialFlag::narrow;
     buffer.write(materials.data(), materials.size() * sizeof(MaterialRecord));
     return std::find(narrow.begin(), narrow.end(), 1u) != narrow.end();
+}
+
+bool has_compact_light(Device& device, Scene& scene) {
+    if (scene.lights == 0) return false;
+    const auto compact = ask(device, scene, "kernels/measure_compactness.comp", "LightCompactness",
+                             uint32_t(scene.lights));
+    return std::find(compact.begin(), compact.end(), 1u) != compact.end();
 }
 
 Techniques choose_techniques(Device& device, Scene& scene, Algorithm algorithm) {

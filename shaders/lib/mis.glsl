@@ -6,8 +6,9 @@
 // - Densities of rays are per étendue (area perpendicular to the ray times solid angle), so lights and receivers near
 //   and far, points and surfaces need no cases of their own.
 // - Which light a point samples depends on the point, so a forward path learns the density of that only at its first hit.
-// - Merging happens only at vertices that light reaches from a narrow surface (MATERIAL_NARROW): everything else is
-//   sampled well enough without. Walking backward, a vertex learns that one event later (Path.pending).
+// - Merging happens only at vertices that light reaches from a narrow surface (MATERIAL_NARROW) and leaves towards another, or
+//   towards the receiver: everything else is sampled well enough without, and a query costs as much as a ray. A path learns
+//   whether it may have merged at a vertex one event later (Path.pending).
 // - The merging radius varies over space, so vc is kept without a twin in units of merging (dVM = dVC / density there).
 #include "interfaces/light_source.glsl"
 #include "interfaces/receiver.glsl"
@@ -28,7 +29,7 @@ float pixel_count() { return float(forward_pass.width) * float(forward_pass.heig
 struct VertexMis {
     float vcm;
     float vc;
-    float merging;  // pi r² times the number of forward paths; forward: 0 where merging is not possible
+    float merging;  // pi r² times the number of forward paths; 0 where the path's own side forbids merging
 };
 
 #if !BIDIRECTIONAL
@@ -65,18 +66,17 @@ float start_connection_pdf(Path path, vec3 position) {
 VertexMis vertex_mis(Path path, SurfacePoint p) {
     VertexMis m;
     float to_area = 1.0 / abs(dot(path.direction, p.geometric_normal));
-    bool starts = (path.flags & PATH_STARTS) != 0u;
+    bool starts = (path.flags & PATH_STARTS) != 0u, after_narrow = (path.flags & PATH_AFTER_NARROW) != 0u;
     vec3 d = p.position - path.reference;
     float distance_squared = dot(d, d);
 #if FORWARD
     m.vcm = path.vcm * to_area * (starts ? start_connection_pdf(path, p.position) : distance_squared);
-    m.vc = path.vc * to_area;
-    m.merging = (path.flags & PATH_AFTER_NARROW) != 0u ? merge_density(p.position) : 0.0;
+    m.merging = after_narrow ? merge_density(p.position) : 0.0;
 #else
     m.vcm = path.vcm * to_area * (starts && (path.flags & PATH_PARALLEL) != 0u ? 1.0 : distance_squared);
-    m.vc = (path.vc + (is_narrow(p.material) ? path.pending : 0.0)) * to_area;
-    m.merging = merge_density(p.position);
+    m.merging = after_narrow || starts ? merge_density(p.position) : 0.0;
 #endif
+    m.vc = (path.vc + (is_narrow(p.material) ? path.pending : 0.0)) * to_area;
     return m;
 }
 
@@ -90,9 +90,6 @@ void update_mis(inout Path path, VertexMis m, uint material, BsdfSample b, float
         float ratio = cosine / b.pdf;
         path.vc = ratio * (m.vc * pdf_reverse + connects(path) * m.vcm);
         path.pending = ratio * m.merging;
-#if FORWARD
-        path.vc += path.pending;
-#endif
         path.vcm = 1.0 / b.pdf;
     }
     path.flags &= ~(PATH_STARTS | PATH_PARALLEL | PATH_AFTER_NARROW);

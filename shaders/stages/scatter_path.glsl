@@ -134,7 +134,7 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     if (!is_delta) vertex_shadow = connect_vertices(path, p, s, mis);
 #endif
 #if MERGE_VERTICES
-    if (!is_delta) merge_vertices(path, p, s, mis);
+    if (!is_delta && mis.merging > 0.0) merge_vertices(path, p, s, mis);
 #endif
 #if FORWARD_ONLY
     if (forward_brings(path) && (event.next.event & EVENT_DELTA) == 0u) return false;

@@ -1,0 +1,107 @@
+#include "host/commands/stats.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "host/image/atomic_file.h"
+
+namespace etendue {
+namespace {
+
+double per_second(uint64_t count, double seconds) { return seconds > 0 ? double(count) / seconds : 0.0; }
+
+// Forward rays carry power. Cameras take none: what is neither absorbed nor lost has left the scene. Russian roulette
+// takes from some paths what it gives to others; what is left of that is noise.
+nlohmann::json flux_balance(const RenderCounters& c, double power) {
+    const double lumens = power / double(c.forward_paths);  // a unit of the counters
+    const double escaped = c.forward_escaped * lumens;
+    return {{"unit", "lm"},
+            {"emitted", c.emitted * lumens},
+            {"received", 0.0},
+            {"absorbed", c.absorbed * lumens},
+            {"roulette", c.roulette * lumens},
+            {"lost",
+             {{"escaped", escaped},
+              {"depth_limit", c.forward_depth_limit_lost * lumens},
+              {"vertex_overflow", 0.0},
+              {"non_finite", c.forward_non_finite}}}};
+}
+
+// Backward rays carry importance: 1 a path. What leaves the scene is received by its surroundings; what is neither
+// received nor lost was absorbed.
+nlohmann::json importance_balance(const RenderCounters& c, double paths) {
+    return {
+        {"unit", "share of the importance that the receiver sent out"},
+        {"emitted", 1.0},
+        {"received", c.escaped / paths},
+        {"absorbed", 1.0 - (c.escaped + c.depth_limit_lost) / paths},
+        {"lost",
+         {{"depth_limit", c.depth_limit_lost / paths}, {"non_finite", double(c.non_finite) / paths}}}};
+}
+
+nlohmann::json stats(const RenderOptions& options, const Device& device, const Scene& scene,
+                     const Renderer& renderer, double error, double setup_seconds) {
+    nlohmann::json kernels = nlohmann::json::array(), timings = nlohmann::json::object();
+    double compile_seconds = 0;
+    for (const KernelReport& k : scene.kernels) {
+        kernels.push_back({{"name", k.name},
+                           {"from_cache", k.from_cache},
+                           {"seconds", k.seconds},
+                           {"spirv_bytes", k.spirv_bytes}});
+        compile_seconds += k.seconds;
+    }
+    const RenderCounters& c = renderer.counters();
+    const uint64_t rays = all_rays(c);
+    for (const auto& [name, t] : renderer.timings())
+        timings[name] = {{"seconds", t.seconds},
+                         {"dispatches", t.dispatches},
+                         {"rays_per_second", per_second(rays, t.seconds)}};
+    const AlgorithmChoice& choice = renderer.choice();
+    const double paths = double(renderer.passes()) * options.size->width * options.size->height;
+    nlohmann::json json = {
+        {"scene", options.scene.string()},
+        {"command", options.command_line},
+        {"version", ETENDUE_VERSION},
+        {"device", device.description.name},
+        {"driver", device.description.driver},
+        {"seed", options.seed},
+        {"width", options.size->width},
+        {"height", options.size->height},
+        {"passes", renderer.passes()},
+        {"backward_rays", c.rays},
+        {"shadow_rays", c.shadow_rays},
+        {"forward_paths", c.forward_paths},
+        {"forward_rays", c.forward_rays},
+        {"forward_shadow_rays", c.forward_shadow_rays},
+        {"split_passes", c.split_passes},
+        {"seconds", renderer.seconds()},
+        {"setup_seconds", setup_seconds},
+        {"rays_per_second", per_second(rays, renderer.seconds())},
+        {"estimated_relative_error", std::isfinite(error) ? nlohmann::json(error) : nlohmann::json()},
+        {"algorithm", algorithm_name(choice.algorithm)},
+        {"algorithm_reason", choice.reason},
+        {"forward_paths_a_pixel", c.forward_paths ? choice.forward_paths : 0.0},
+        {"pilot_seconds", choice.pilot_seconds},
+        {"schedule", schedule_name(renderer.schedule())},
+        {"kernels", timings},
+        {"compiled_kernels", kernels},
+        {"compile_seconds", compile_seconds},
+        {"driver_compile_seconds", renderer.warm_up_seconds()},
+        {"peak_device_memory_bytes", device.peak_bytes_allocated},
+        {"light_power_lm", scene.power},
+        {"importance_balance", importance_balance(c, paths)},
+        {"non_finite_samples", c.non_finite + c.forward_non_finite}};
+    json["power_balance"] = c.forward_paths ? flux_balance(c, scene.power) : json["importance_balance"];
+    return json;
+}
+
+}  // namespace
+
+void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
+                 const Scene& scene, const Renderer& renderer, double error, double setup_seconds) {
+    const std::string text =
+        stats(options, device, scene, renderer, error, setup_seconds).dump(2) + "\n";
+    write_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+}  // namespace etendue

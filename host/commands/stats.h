@@ -1,0 +1,14 @@
+// --stats: what a run did, as JSON.
+#pragma once
+#include <filesystem>
+
+#include "host/commands.h"
+#include "host/render/renderer.h"
+
+namespace etendue {
+
+// `error`: the estimated relative error of the image; `setup_seconds`: before the first pass.
+void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
+                 const Scene& scene, const Renderer& renderer, double error, double setup_seconds);
+
+}  // namespace etendue

@@ -1,0 +1,96 @@
+#include "host/render/automatic.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "host/image/compare.h"
+#include "host/render/techniques.h"
+
+namespace etendue {
+namespace {
+
+constexpr uint32_t pilot_pixels = 32;  // along the longer side
+constexpr uint32_t pilot_passes = 32;
+constexpr double false_alarm = 1e-3;   // of calling images different that are not
+constexpr double most_paths = 16, least_paths = 0.25;  // forward paths a pixel
+
+struct Pilot {
+    Image image;
+    double variance = 0;          // mean squared relative error of one pass
+    double seconds = 0;           // of one pass
+    double forward_seconds = 0;   // of it, in proportion to the number of forward paths
+};
+
+Pilot run_pilot(Device& device, Scene& scene, RenderSettings settings, Algorithm algorithm, double paths) {
+    const double scale = double(pilot_pixels) / std::max(settings.width, settings.height);
+    settings.width = std::max(1u, uint32_t(settings.width * std::min(1.0, scale)));
+    settings.height = std::max(1u, uint32_t(settings.height * std::min(1.0, scale)));
+    settings.algorithm = algorithm;
+    settings.forward_paths = paths;
+    settings.seed = ~settings.seed;  // independent of the image to come
+    Renderer renderer(device, scene, settings);
+    for (uint32_t i = 0; i < pilot_passes; ++i) renderer.render_passes(1);
+    Pilot pilot;
+    pilot.image = renderer.develop();
+    const double error = estimated_relative_error(pilot.image);
+    pilot.variance = error * error * pilot_passes;
+    pilot.seconds = renderer.seconds() / pilot_passes;
+    for (const auto& [kernel, timing] : renderer.timings())
+        if (kernel != "trace_paths") pilot.forward_seconds += timing.seconds / pilot_passes;
+    return pilot;
+}
+
+bool agree(const Image& a, const Image& b) {
+    for (uint32_t tile : {1u, 8u, pilot_pixels}) {
+        const auto test = z_test(a, b, {"R", "G", "B"}, tile, false_alarm);
+        if (test && !test->passes) return false;
+    }
+    return true;
+}
+
+// variance = a + b / paths, seconds = c + d paths: their product is least where paths² = b c / (a d).
+double best_paths(const Pilot& one, const Pilot& four) {
+    const double b = std::max(0.0, (one.variance - four.variance) * 4 / 3);
+    const double a = std::max(one.variance - b, 0.01 * one.variance);
+    const double c = std::max(one.seconds - one.forward_seconds, 1e-9), d = std::max(one.forward_seconds, 1e-9);
+    const double exponent = std::round(0.5 * std::log2(std::max(b * c / (a * d), 1e-9)) / 2);
+    return std::clamp(std::exp2(2 * exponent), least_paths, most_paths);
+}
+
+}  // namespace
+
+AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings) {
+    AlgorithmChoice choice;
+    choice.algorithm = Algorithm::backward;
+    if (!(scene.power > 0)) {
+        choice.reason = "no light";
+    } else if (!find_narrow_materials(device, scene)) {
+        choice.reason = "no surface is smooth or nearly so";
+    } else if (!has_compact_light(device, scene)) {
+        choice.reason = "no light is compact";
+    }
+    if (!choice.reason.empty()) return choice;
+
+    const auto start = std::chrono::steady_clock::now();
+    const Pilot backward = run_pilot(device, scene, settings, Algorithm::backward, 1);
+    const Pilot one = run_pilot(device, scene, settings, Algorithm::bidirectional, 1);
+    const bool agreed = agree(backward.image, one.image);
+    const double ratio = one.variance * one.seconds / (backward.variance * backward.seconds);
+    const std::string measured = fmt::format("error² x time of bidirectional is {:.3g} of backward", ratio);
+    if (agreed && !(ratio < 1)) {
+        choice.reason = "a pilot agrees both ways, and " + measured;
+    } else {
+        choice.algorithm = Algorithm::bidirectional;
+        choice.forward_paths =
+            best_paths(one, run_pilot(device, scene, settings, Algorithm::bidirectional, 4));
+        choice.reason = agreed ? "in a pilot " + measured : "in a pilot backward rays alone missed light";
+    }
+    choice.pilot_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return choice;
+}
+
+}  // namespace etendue
