@@ -4,10 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/image/exr.h"
-#include "tests/support/emission_probe.h"
+#include "tests/contracts/emission_cases.h"
 #include "tests/support/statistics.h"
-#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 using nlohmann::json;
@@ -19,126 +17,8 @@ constexpr double false_alarm = 1e-4;
 
 double luminance(glm::vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
-struct Case {
-    std::string class_name, label;
-    SceneDescription scene;
-    double power_tolerance = 1e-5;  // relative, of what the light states
-    MeasuringDisk disk{{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f};
-};
-
-// Two specks at opposite corners make the scene a sphere of radius sqrt(3) around the origin.
-SceneDescription empty_scene() {
-    SceneDescription scene;
-    scene.materials.resize(2);
-    for (MaterialDescription& material : scene.materials) material.surface.class_name = "absorber";
-    MeshDescription specks;
-    for (float corner : {-1.0f, 1.0f})
-        for (glm::vec3 v : {glm::vec3(0), glm::vec3(-1e-3f, 0, 0), glm::vec3(0, -1e-3f, 0)})
-            specks.positions.push_back(glm::vec3(corner) + corner * v);
-    specks.triangles = {{0, 1, 2}, {3, 4, 5}};
-    scene.meshes.push_back(specks);
-    scene.instances.push_back({});
-    return scene;
-}
-
-SceneDescription emissive_scene(bool double_sided) {
-    SceneDescription scene = empty_scene();
-    scene.materials[1].emission = EmissionDescription{};
-    scene.materials[1].emission->value = {3, 2, 1};
-    scene.materials[1].double_sided = double_sided;
-    return scene;
-}
-
-SceneDescription shape_scene(const std::string& name, const json& parameters, const glm::dmat4& m,
-                             bool double_sided = false) {
-    SceneDescription scene = emissive_scene(double_sided);
-    PlacedObject shape;
-    shape.object = {name, parameters, "/shape"};
-    shape.world_from_local = m;
-    shape.material = 1;
-    scene.shapes.push_back(shape);
-    return scene;
-}
-
-SceneDescription triangle_scene(bool textured) {
-    SceneDescription scene = emissive_scene(false);
-    MeshDescription mesh;
-    mesh.positions = {{-0.5f, -0.6f, 0.4f}, {0.4f, 0.7f, 0.6f}, {0.7f, -0.5f, 0.3f}};
-    mesh.triangles = {{0, 1, 2}};
-    mesh.material = 1;
-    if (textured) {
-        mesh.uv0 = {{0, 0}, {0, 1}, {1, 0}};
-        ImageDescription image{.name = "gradient", .width = 2, .height = 2};
-        image.rgba32f = {1, 1, 1, 1, 0.5f, 0.2f, 0.1f, 1, 0.3f, 0.6f, 0.9f, 1, 0, 0, 0, 1};
-        scene.images.push_back(image);
-        scene.textures.push_back({});
-        scene.materials[1].emission->texture = {{"index", 0}};
-    }
-    scene.meshes.push_back(mesh);
-    scene.instances.push_back({1});
-    return scene;
-}
-
-SceneDescription light_scene(const std::string& name, const json& parameters) {
-    SceneDescription scene = empty_scene();
-    PlacedObject light;
-    light.object = {name, parameters, "/light"};
-    light.world_from_local[0] *= 2.0;  // scale does not count
-    light.world_from_local[2] *= 3.0;
-    light.world_from_local[3] = {0, 0, 0.5, 1};
-    scene.lights.push_back(light);
-    return scene;
-}
-
-SceneDescription environment_scene(const std::string& name, const json& parameters) {
-    SceneDescription scene = empty_scene();
-    scene.environment = ObjectDescription{name, parameters, "/environment"};
-    return scene;
-}
-
-std::string environment_file() {
-    static const TemporaryFolder folder;
-    Image image{.width = 8, .height = 4};
-    std::vector<float> texels;
-    for (int i = 0; i < 32; ++i)
-        for (int c = 0; c < 3; ++c) texels.push_back(i == 13 ? 9.0f : float((7 * i + c) % 5) * 0.3f);
-    add_channels(image, {"R", "G", "B"}, texels, 3);
-    const auto path = folder / "environment.exr";
-    write_exr(path, image);
-    return path.string();
-}
-
-std::vector<Case> make_cases() {
-    const auto down = [](double z) {  // +z becomes -z
-        return glm::dmat4({1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0.1, 0, z, 1});
-    };
-    const glm::dmat4 squeezed({0.9, 0.2, 0, 0}, {0, -0.7, 0.3, 0}, {0.1, 0, -1.2, 0}, {0.1, 0.2, 0.3, 1});
-    const MeasuringDisk in_beam{{0.0002f, 0, -0.5f}, {0, 0, 1}, 0.0006f};
-    return {
-        {"area", "triangle", triangle_scene(false)},
-        // Its power is estimated from 16 of its points.
-        {"area", "textured triangle", triangle_scene(true), 0.2},
-        {"area", "disk, both sides", shape_scene("disk", {{"radius", 0.5}}, squeezed, true)},
-        {"area", "rectangle", shape_scene("rectangle", {{"size", {0.8, 0.5}}}, down(0.4))},
-        {"area", "sphere", shape_scene("sphere", {{"radius", 0.4}}, down(0.4))},
-        // The area of a shape under such a map is a mean over 64 points (lib/primitives.glsl).
-        {"area", "sphere, squeezed", shape_scene("sphere", {{"radius", 0.4}}, squeezed), 0.01},
-        {"area", "cylinder, both sides",
-         shape_scene("cylinder", {{"radius", 0.3}, {"height", 0.4}}, down(0.3), true)},
-        {"point", "", light_scene("point", {{"intensity", 7}, {"color", {1, 0.5, 0.25}}})},
-        {"spot", "wide", light_scene("spot", {{"inner_cone_angle", 0.3}, {"outer_cone_angle", 0.9}})},
-        {"spot", "to a point", light_scene("spot", {{"inner_cone_angle", 0}, {"outer_cone_angle", 1.5}})},
-        {"spot", "sharp", light_scene("spot", {{"inner_cone_angle", 0.5}, {"outer_cone_angle", 0.5}})},
-        {"spot", "narrow", light_scene("spot", {{"inner_cone_angle", 0.0004}, {"outer_cone_angle", 0.001}}),
-         1e-4, in_beam},
-        {"directional", "", light_scene("directional", {{"intensity", 5}})},
-        {"constant", "", environment_scene("constant", {{"radiance", {1, 2, 3}}})},
-        {"image", "", environment_scene("image", {{"file", environment_file()}, {"rotation", 1}}), 1e-4},
-    };
-}
-
 struct Probed {
-    Case c;
+    EmissionCase c;
     std::unique_ptr<EmissionProbe> probe;
     std::vector<ProbedRay> rays;
     bool has_surface() const { return c.class_name == "area"; }
@@ -148,7 +28,7 @@ struct Probed {
 std::vector<Probed>& probed() {
     static std::vector<Probed> all = [] {
         std::vector<Probed> result;
-        for (Case& c : make_cases()) {
+        for (EmissionCase& c : emission_cases()) {
             auto probe = std::make_unique<EmissionProbe>(c.scene);
             std::vector<ProbedRay> rays = probe->emit(1 << 19, 1);
             result.push_back({std::move(c), std::move(probe), std::move(rays)});
