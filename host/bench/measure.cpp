@@ -27,9 +27,8 @@ std::optional<double> render(Renderer& renderer, uint32_t seed, uint64_t passes,
         if (interrupted()) return std::nullopt;
         const uint64_t left = passes - renderer.passes();
         renderer.render_passes(uint32_t(std::min<uint64_t>(renderer.passes_in(batch_seconds), left)));
-        const RenderCounters& c = renderer.counters();
         status.passes = renderer.passes();
-        status.rays = double(c.rays + c.shadow_rays + c.forward_rays + c.forward_shadow_rays);
+        status.rays = double(all_rays(renderer.counters()));
         status.seconds = renderer.seconds() - before;
         show_progress(progress, status);
     }

@@ -74,6 +74,12 @@ std::vector<Contestant> make_contestants(const BenchOptions& options, OpenedScen
             contestants.push_back(
                 {algorithm, std::make_unique<Renderer>(*opened.device, opened.scene, settings)});
             contestants.back().renderer->render_passes(1);  // the driver finishes its compiling
+            const AlgorithmChoice& choice = contestants.back().renderer->choice();
+            if (algorithm != Algorithm::automatic) continue;
+            scene.notes.push_back(fmt::format("auto: {}: {}; a pilot of {:.2g} s is not in its times",
+                                              algorithm_name(choice.algorithm), choice.reason,
+                                              choice.pilot_seconds));
+            show_note(progress, scene.notes.back());
         } catch (const Error& error) {
             if (error.code != ExitCode::bad_input) throw;
             scene.notes.push_back(fmt::format("{}: left out: {}", algorithm_name(algorithm), error.what()));
