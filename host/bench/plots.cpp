@@ -59,7 +59,8 @@ std::string plot(const std::filesystem::path& file, const std::string& title, co
 std::string draw_plots(const std::filesystem::path& folder, const BenchResults& results) {
     std::string script =
         "set terminal svg size 720,480 noenhanced font 'sans-serif,13' background rgb '#ffffff'\n"
-        "set logscale xy\nset format '%g'\nset grid linecolor rgb '#dddddd'\nset key bottom left Left reverse opaque\n";
+        "set logscale xy\nset format '%g'\nset grid linecolor rgb '#dddddd'\nset key bottom left Left "
+        "reverse opaque\n";
     for (const BenchScene& scene : results.scenes) {
         const std::vector<BenchCurve> all = curves(results, scene);
         for (const Axis& axis : axes) {
