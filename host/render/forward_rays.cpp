@@ -14,7 +14,7 @@ struct ForwardPass {
 };
 
 constexpr double first_radius_pixels = 1.0;  // radius of merging in the first pass, in widths of a pixel
-constexpr uint32_t vertices_a_path = 16;       // for which room is kept, if there is as much
+constexpr uint32_t vertices_a_path = 16;     // for which room is kept, if there is as much
 
 }  // namespace
 
@@ -30,7 +30,9 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
       techniques_(techniques),
       power_(scene.power),
       radius_(scene.radius),
-      count_(uint32_t(std::clamp(settings.forward_paths * settings.width * settings.height, 1.0, double(1 << 24)))),
+      all_(uint32_t(
+          std::clamp(settings.forward_paths * settings.width * settings.height, 1.0, double(1 << 24)))),
+      count_(all_),
       pass_(device, sizeof(ForwardPass), "ForwardPassTable"),
       splats_(device, uint64_t(settings.width) * settings.height * 24, "Splats") {
     splats_.fill(0);
@@ -45,6 +47,12 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
     }
     BufferTable table = buffers();
     table.insert(film.begin(), film.end());
+    if (settings.schedule != Schedule::fused) {
+        wavefront_.emplace(device, scene, Wavefront::Direction::forward, techniques,
+                           std::min(count_, Wavefront::wanted_paths(device)),
+                           settings.schedule == Schedule::by_class, table, defines());
+        return;
+    }
     trace_forward_paths_ = make_kernel(device, scene, "kernels/trace_forward_paths.comp", table,
                                        techniques.forward_defines() + defines());
     const uint32_t a_group = trace_forward_paths_.group_size() * (device.description.type == "CPU" ? 8 : 1);
@@ -77,8 +85,7 @@ void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, Ker
     while (true) {
         write_pass(pass, seed);
         if (vertices_) vertices_->clear(commands);
-        commands.dispatch(trace_forward_paths_, groups_);
-        commands.run(&timings);
+        trace_paths(commands, timings);
         paths_ += count_;
         if (!vertices_) return;
         const VertexMap::Counts counts = vertices_->counts();
@@ -91,15 +98,32 @@ void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, Ker
     if (techniques_.merge && expected_vertices_ > 0) vertices_->build(commands, expected_vertices_);
 }
 
-void ForwardRays::restart() {
+void ForwardRays::trace_paths(CommandList& commands, KernelTimings& timings) {
+    if (wavefront_) {
+        for (uint32_t first = 0; first < count_; first += wavefront_->slots())
+            wavefront_->trace(commands, std::min(wavefront_->slots(), count_ - first),
+                              {{"first_path", first}}, timings);
+        return;
+    }
+    commands.dispatch(trace_forward_paths_, groups_);
+    commands.run(&timings);
+}
+
+void ForwardRays::restart() { resume(0); }
+
+void ForwardRays::resume(uint32_t paths_a_pass) {
     splats_.fill(0);
+    count_ = paths_a_pass > 0 ? std::min(paths_a_pass, all_) : all_;
 }
 
 void ForwardRays::warm_up(CommandList& commands) {
     const ForwardPass nothing{};
     pass_.write(&nothing, sizeof nothing);
     if (vertices_) vertices_->clear(commands);
-    commands.dispatch(trace_forward_paths_, 1);
+    if (wavefront_)
+        wavefront_->warm_up(commands);
+    else
+        commands.dispatch(trace_forward_paths_, 1);
     if (vertices_) vertices_->build(commands, 1);
     commands.run();
 }

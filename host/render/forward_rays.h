@@ -1,5 +1,5 @@
-// Forward rays of a pass: paths from the light sources, what they bring straight to the pixels, and the vertices that
-// backward paths connect to and merge with.
+// Forward rays of a pass: paths from the light sources, what they bring straight to the pixels, and the
+// vertices that backward paths connect to and merge with.
 #pragma once
 #include <optional>
 #include <utility>
@@ -7,15 +7,17 @@
 #include "host/render/renderer.h"
 #include "host/render/techniques.h"
 #include "host/render/vertex_map.h"
+#include "host/render/wavefront.h"
 
 namespace etendue {
 
-// Radius of merging in pass `pass` (0, 1, …) relative to that of the first: squared, it falls as pass^(alpha - 1) with
-// alpha = 2/3 (Knaus & Zwicker 2011, eq. 13), so that bias and variance both vanish.
+// Radius of merging in pass `pass` (0, 1, …) relative to that of the first: squared, it falls as pass^(alpha
+// - 1) with alpha = 2/3 (Knaus & Zwicker 2011, eq. 13), so that bias and variance both vanish.
 double merge_radius_factor(uint64_t pass);
 
 class ForwardRays {
   public:
+    // settings.schedule must not be automatic.
     ForwardRays(Device& device, Scene& scene, const RenderSettings& settings, const Techniques& techniques,
                 const BufferTable& film);
     // What kernels of backward rays share.
@@ -28,21 +30,26 @@ class ForwardRays {
     // Paths traced, and passes that were repeated with fewer, since the last call.
     uint64_t take_paths() { return std::exchange(paths_, 0); }
     uint64_t take_splits() { return std::exchange(splits_, 0); }
+    uint32_t paths_a_pass() const { return count_; }
     void restart();
+    // Goes on behind a pass of that many paths; 0 = there was none.
+    void resume(uint32_t paths_a_pass);
 
   private:
+    void trace_paths(CommandList& commands, KernelTimings& timings);
     void write_pass(uint64_t pass, uint32_t seed);
     RenderSettings settings_;
     Techniques techniques_;
-    double power_;   // of all lights, lm
-    float radius_;   // m, of the scene
-    uint32_t count_;  // forward paths a pass
+    double power_;          // of all lights, lm
+    float radius_;          // m, of the scene
+    uint32_t all_, count_;  // forward paths a pass: where their vertices fit, and now
     uint64_t paths_ = 0, splits_ = 0;
     uint32_t expected_vertices_ = 0;
     Buffer pass_, splats_, path_ends_;
     std::optional<VertexMap> vertices_;  // where vertices are connected or merged
-    Kernel trace_forward_paths_;
+    Kernel trace_forward_paths_;         // whole paths in one kernel, or
     uint32_t groups_ = 1;
+    std::optional<Wavefront> wavefront_;  // a kernel a stage
 };
 
 }  // namespace etendue

@@ -3,6 +3,7 @@
 #pragma once
 #include "host/render/forward_rays.h"
 #include "host/render/renderer.h"
+#include "host/render/wavefront.h"
 
 namespace etendue {
 
@@ -35,14 +36,8 @@ struct Renderer::WavefrontPipeline : Pipeline {
     // One batch: `samples` samples of the pixels [first_pixel, first_pixel + pixels).
     void run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample,
                   uint32_t samples, KernelTimings& timings);
-    void make_scatter_kernels(Device& device, Scene& scene, BufferTable table, bool by_class);
-    uint32_t slots = 0;         // paths in memory
-    uint32_t items_a_lane = 1;  // of a queue
-    Buffer ray_origins, ray_directions, path_states, shadow_rays, ray_queue, queue_counts, hits,
-        hit_instances;
-    Buffer class_queues, class_counts;  // with a kernel for each class
-    Kernel emit_camera_rays, find_hits, sort_hits, find_occlusions, accumulate_film;
-    std::vector<Kernel> scatter_paths;  // one, or one for each class of surfaces
+    Wavefront paths;
+    Kernel accumulate_film;
 };
 
 }  // namespace etendue

@@ -28,6 +28,7 @@ void visit_counters(Counters& c, Visit visit) {
     visit("escaped", c.escaped);
     visit("depth_limit_lost", c.depth_limit_lost);
     visit("forward_paths", c.forward_paths);
+    visit("forward_paths_a_pass", c.forward_paths_a_pass);
     visit("forward_rays", c.forward_rays);
     visit("forward_shadow_rays", c.forward_shadow_rays);
     visit("forward_non_finite", c.forward_non_finite);
@@ -100,7 +101,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     scene.features.film_by_address = film_.by_address();
     BufferTable film = film_.buffers();
     film["CounterSums"] = &counter_sums_;
-    if (schedule_ == Schedule::automatic) schedule_ = choose_schedule(scene);
+    if (schedule_ == Schedule::automatic) schedule_ = settings_.schedule = choose_schedule(scene);
     choice_ = {settings.algorithm, settings.forward_paths, "asked for", 0};
     if (settings.choice)
         choice_ = *settings.choice;
@@ -110,7 +111,6 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     settings_.forward_paths = choice_.forward_paths;
     const Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
     if (techniques.forward) {
-        schedule_ = Schedule::fused;
         forward_ = std::make_unique<ForwardRays>(device, scene, settings_, techniques, film);
         film.merge(forward_->buffers());
     }
@@ -164,6 +164,7 @@ void Renderer::read_counters() {
     if (!forward_) return;
     counters_.forward_paths += forward_->take_paths();
     counters_.split_passes += forward_->take_splits();
+    counters_.forward_paths_a_pass = forward_->paths_a_pass();
     counters_.forward_rays += sums.counts[4];
     counters_.forward_shadow_rays += sums.counts[5];
     counters_.forward_non_finite += sums.counts[6];
@@ -208,6 +209,7 @@ void Renderer::restore(const FilmState& state) {
     film_.write(state.pixels);
     passes_ = state.passes;
     counters_ = state.counters;
+    if (forward_) forward_->resume(uint32_t(counters_.forward_paths_a_pass));
 }
 
 }  // namespace etendue

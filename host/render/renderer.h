@@ -50,6 +50,7 @@ struct RenderCounters {
     uint64_t forward_paths = 0, forward_rays = 0, forward_shadow_rays = 0, forward_non_finite = 0,
              forward_depth_limit = 0;
     uint64_t split_passes = 0;  // whose forward vertices did not fit, and that went on with fewer paths
+    uint64_t forward_paths_a_pass = 0;  // of the last one: fewer where vertices did not fit
     double emitted = 0, absorbed = 0, forward_escaped = 0, forward_depth_limit_lost = 0;
     double roulette = 0;  // what Russian roulette took, less what it gave to the survivors
 };

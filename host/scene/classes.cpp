@@ -229,7 +229,8 @@ void ClassRegistry::reflect(ClassInfo& info) const {
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
                          const std::map<std::string, std::string>& constants) {
     // A kernel for one class of surfaces sets ONLY_SURFACE_CLASS to its tag: the dispatch then has one case.
-    std::string text, all = fmt::format("#define {}(X)", interface.table);
+    // ALL_SURFACE_CLASSES are those of the surfaces that it meets besides.
+    std::string text, all = fmt::format("#define {}(X)", interface.table), rows;
     const bool split = interface.interface == Interface::surface && !classes.empty();
     if (split) text += "#ifdef ONLY_SURFACE_CLASS\n";
     for (const ClassInfo* info : classes) {
@@ -237,9 +238,10 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         if (split)
             text += fmt::format("#if ONLY_SURFACE_CLASS == {}\n#define {}(X){}\n#endif\n", info->tag,
                                 interface.table, row);
-        all += row;
+        rows += row;
     }
-    text += split ? "#else\n" + all + "\n#endif\n" : all;
+    all += rows;
+    text += split ? fmt::format("#define ALL_{}(X){}\n#else\n{}\n#endif\n", interface.table, rows, all) : all;
     text += '\n';
     for (const ClassInfo* info : classes) {
         text += fmt::format("#include \"{}\"\n", info->file);

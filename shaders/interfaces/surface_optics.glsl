@@ -84,10 +84,7 @@ struct SurfacePair {
     float pdf_reverse;  // of wo given wi
 };
 
-SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
-    SurfacePair result = SurfacePair(Spectrum(0), 0.0, 0.0);
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name)                                                 \
+#define PAIR_CASE(tag, Struct, name)                                            \
     case tag: {                                                                \
         Struct r = name##_resolve(name##_record(record_index(ref)), c);        \
         result.value = name##_eval(r, c, wo, wi);                              \
@@ -95,11 +92,22 @@ SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
         result.pdf_reverse = name##_pdf(r, c, wi, wo);                         \
         break;                                                                 \
     }
-        SURFACE_CLASSES(CASE)
-#undef CASE
-    }
+SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
+    SurfacePair result = SurfacePair(Spectrum(0), 0.0, 0.0);
+    switch (record_tag(ref)) { SURFACE_CLASSES(PAIR_CASE) }
     return result;
 }
+// Of a surface of any class, in a kernel for one class too.
+#ifdef ONLY_SURFACE_CLASS
+SurfacePair surface_pair_of_any(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
+    SurfacePair result = SurfacePair(Spectrum(0), 0.0, 0.0);
+    switch (record_tag(ref)) { ALL_SURFACE_CLASSES(PAIR_CASE) }
+    return result;
+}
+#else
+#define surface_pair_of_any surface_pair
+#endif
+#undef PAIR_CASE
 
 // All of an event at once: scattering towards wi, and a sample. The pdfs of the way back only where paths need them.
 struct SurfaceEvent {

@@ -1,10 +1,14 @@
-// Adds the finished samples of each pixel of the tile to the film, in the order of their index.
-// Reads: path states. Writes: film, counters. Barrier expected: after the dispatch.
+// Adds the finished samples of each pixel of the tile to the film, in the order of their index. What forward rays have brought
+// to a pixel in this pass counts as part of its sample.
+// Reads: path states, splats. Writes: film, splats, counters. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint first_pixel, tile_pixels, samples; };
 #include "lib/counters.glsl"
 #include "lib/film.glsl"
 #include "lib/wavefront.glsl"
+#if HAS_SPLATS
+#include "lib/splats.glsl"
+#endif
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
@@ -15,7 +19,11 @@ void main() {
             Spectrum radiance = path_states[s * tile_pixels + i].radiance;
             bool finite = is_finite(radiance);
             counters.non_finite += finite ? 0u : 1u;
-            add_sample(pixel, finite ? radiance : Spectrum(0));
+            if (!finite) radiance = Spectrum(0);
+#if HAS_SPLATS
+            radiance += take_splats(first_pixel + i);
+#endif
+            add_sample(pixel, radiance);
         }
         film_at(first_pixel + i) = pixel;
     }

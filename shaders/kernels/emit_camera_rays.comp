@@ -2,7 +2,7 @@
 // Reads: receiver. Writes: path state, the ray queue of bounce 0 and its count. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
-    uint receiver, slots;
+    uint paths, receiver;
     uint first_pixel, tile_pixels, first_sample, width, height, seed;
 };
 #include "lib/wavefront.glsl"
@@ -10,8 +10,8 @@ layout(push_constant) uniform Push {
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;
-    if (slot == 0u) queue_counts[0] = slots;
-    if (slot >= slots) return;
+    if (slot == 0u) queue_counts[0] = paths;
+    if (slot >= paths) return;
     uint pixel = first_pixel + slot % tile_pixels;
     uint sample_index = first_sample + slot / tile_pixels;
     store_path(slot, emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), sample_index, seed));

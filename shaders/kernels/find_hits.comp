@@ -18,9 +18,9 @@ layout(scalar) writeonly buffer HitInstances { uint hit_instances[]; };
 #endif
 #if HAS_RAY_QUEUE
 layout(scalar) readonly buffer RayQueue { uint ray_queue[]; };
-layout(scalar) readonly buffer QueueCounts { uint queue_counts[]; };  // of bounce b: rays at 2 b
-layout(push_constant, scalar) uniform Push { uint bounce, read_queue; };
-#define RAY_COUNT queue_counts[2u * bounce]
+layout(scalar) readonly buffer QueueCounts { uint queue_counts[]; };
+layout(push_constant, scalar) uniform Push { uint counter, read_queue; };  // which count; where the queue starts
+#define RAY_COUNT queue_counts[counter]
 #define QUEUED_RAY(i) ray_queue[read_queue + i]
 #else
 layout(push_constant, scalar) uniform Push { uint ray_count; };

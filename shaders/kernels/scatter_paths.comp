@@ -1,15 +1,24 @@
-// One event of every path in the queue: media crossed, emission collected, a light sampled, a new direction chosen.
-// With SCATTER_CLASS only the paths that sort_hits has dealt to that class (ONLY_SURFACE_CLASS is its tag).
-// Reads: the ray queue of this bounce, hits, path state, scene. Writes: path state, the shadow rays and the ray queue of
-// the next bounce with their counts, counters. Barrier expected: after the dispatch.
+// One event of every path in the queue, backward or forward: media crossed, emission collected, shadow rays and a new
+// direction chosen. With SCATTER_CLASS only the paths that sort_hits has dealt to that class (ONLY_SURFACE_CLASS is its tag).
+// Reads: the ray queue of this bounce, hits, path state, scene; backward: forward vertices. Writes: path state, the shadow rays
+// and the ray queue of the next bounce with their counts, counters; forward: vertices. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
     uint bounce, read_queue, write_queue;  // bounce within the counts; where the queues start
+#if FORWARD
+    uint first_path;
+#else
+    uint slots;  // that there are
     uint first_pixel, tile_pixels, first_sample, width, height, seed;
+#endif
 };
 #include "lib/counters.glsl"
 #include "lib/wavefront.glsl"
+#if FORWARD
+#include "stages/scatter_forward_path.glsl"
+#else
 #include "stages/scatter_path.glsl"
+#endif
 
 layout(scalar, set = 0) readonly buffer Hits { vec4 hits[]; };
 #if HAS_INSTANCES
@@ -17,11 +26,16 @@ layout(scalar, set = 0) readonly buffer HitInstances { uint hit_instances[]; };
 #endif
 
 void main() {
-    Tile tile = Tile(first_pixel, tile_pixels, first_sample, width, height, seed);
+#if FORWARD
+    Batch batch = Batch(first_path);
+#else
+    Batch batch = Batch(first_pixel, tile_pixels, first_sample, width, height, seed);
+#endif
+    uint counts = COUNTS_A_BOUNCE * bounce;
 #ifdef SCATTER_CLASS
     uint count = class_counts[bounce * SCATTER_CLASS_COUNT + SCATTER_CLASS];
 #else
-    uint count = queue_counts[2u * bounce];
+    uint count = queue_counts[counts];
 #endif
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     Counters counters = no_counters();
@@ -30,6 +44,9 @@ void main() {
         uint i = first + gl_LocalInvocationID.x;
         bool alive = false;
         ShadowRay shadow = no_shadow_ray();
+#if CONNECT_VERTICES && !FORWARD
+        ShadowRay vertex_shadow = no_shadow_ray();
+#endif
         uint slot = 0u;
         if (i < count) {
 #ifdef SCATTER_CLASS
@@ -37,22 +54,33 @@ void main() {
 #else
             slot = ray_queue[read_queue + i];
 #endif
-            Path path = load_path(tile, slot);
+            Path path = load_path(batch, slot);
             vec4 h = hits[slot];
             Hit hit = Hit(h.x, h.yz, floatBitsToUint(h.w), NO_RECORD);
 #if HAS_INSTANCES
             hit.instance = hit_instances[slot];
 #endif
             counters.rays++;
+#if FORWARD
+            alive = scatter_forward_path(path, hit, first_path + slot, counters, shadow);
+            if (!alive) end_forward_path(batch, slot, path);
+#elif CONNECT_VERTICES
+            alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
+#else
             alive = scatter_path(path, hit, counters, shadow);
+#endif
             store_path(slot, path);
         }
-        uint place = append(2u * bounce + 2u, alive);
+        uint place = append(counts + COUNTS_A_BOUNCE, alive);
         if (alive) ray_queue[write_queue + place] = slot;
-        bool casts = shadow.t_max > 0.0;
-        place = append(2u * bounce + 1u, casts);
-        if (casts)
-            shadow_rays[place] = ShadowState(shadow.origin, shadow.t_max, shadow.direction, slot, shadow.contribution, shadow.medium);
+#if FORWARD
+        append_shadow_ray(shadow, shadow.pixel, 0u, counts + 1u);
+#else
+        append_shadow_ray(shadow, slot, 0u, counts + 1u);
+#if CONNECT_VERTICES
+        append_shadow_ray(vertex_shadow, slot, slots, counts + 2u);
+#endif
+#endif
     }
     store_counters(counters);
 }

@@ -11,7 +11,7 @@ layout(push_constant) uniform Push { uint bounce, read_queue, slots; };
 layout(scalar, set = 0) readonly buffer Hits { vec4 hits[]; };
 
 void main() {
-    uint count = queue_counts[2u * bounce];
+    uint count = queue_counts[COUNTS_A_BOUNCE * bounce];
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     for (uint first = gl_WorkGroupID.x * gl_WorkGroupSize.x; first < count; first += stride) {
         uint i = first + gl_LocalInvocationID.x;

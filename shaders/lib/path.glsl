@@ -35,7 +35,7 @@ struct Path {
 #if FORWARD
     uvec2 vertices;       // the last one stored of this path, and how many
 #endif
-#if MERGE_VERTICES
+#if MERGE_VERTICES && !FORWARD
     Spectrum bias;        // difference of merging with two radii, for the estimate of its bias
 #endif
 };

@@ -1,9 +1,14 @@
-// Paths in memory between the kernels of a pass. A slot holds one path; a queue lists the slots that are still alive.
+// Paths in memory between the kernels of a pass, of one direction. A slot holds one path; a queue lists the slots that are
+// still alive.
 //
-// Slots are dealt to samples of pixels: slot = sample * tile_pixels + pixel within the tile. Ray state is split by who
-// reads it: find_hits needs the first two arrays only.
+// Forward, slots are dealt to consecutive paths of the pass; backward, to samples of pixels: slot = sample * tile_pixels + pixel
+// within the tile. Ray state is split by who reads it: find_hits needs the first two arrays only. What the techniques of
+// lib/path.glsl do not need takes no room; the host sizes the arrays in host/render/wavefront.cpp.
 #include "lib/constants.glsl"
 #include "lib/path.glsl"
+#if FORWARD
+#include "lib/forward_pass.glsl"
+#endif
 
 layout(scalar, set = 0) buffer RayOrigins { vec4 ray_origins[]; };        // xyz, w pdf of the direction
 layout(scalar, set = 0) buffer RayDirections { vec4 ray_directions[]; };  // xyz, w t_max
@@ -11,10 +16,27 @@ layout(scalar, set = 0) buffer RayDirections { vec4 ray_directions[]; };  // xyz
 struct PathState {
     Spectrum throughput;
     uint depth;
-    Spectrum radiance;
-    uint medium;
     vec3 reference;
+    uint medium;
     uint dimension;  // of the sampler
+#if !FORWARD
+    Spectrum radiance;
+#endif
+#if BIDIRECTIONAL
+    float vcm, vc, pending;
+#if FORWARD
+    uint light;
+    vec3 light_normal;
+#endif
+#endif
+#if BIDIRECTIONAL || FORWARD_ONLY
+    uint flags;
+#endif
+#if FORWARD
+    uvec2 vertices;
+#elif MERGE_VERTICES
+    Spectrum bias;
+#endif
 };
 layout(scalar, set = 0) buffer PathStates { PathState path_states[]; };
 
@@ -22,26 +44,40 @@ struct ShadowState {
     vec3 origin;
     float t_max;
     vec3 direction;
-    uint slot;
+    uint target;  // what it contributes to: a slot; forward: a pixel
     Spectrum contribution;
     uint medium;
 };
+// Those towards lights or the receiver; behind them, from `slots` on, those of backward paths towards forward vertices.
 layout(scalar, set = 0) buffer ShadowRays { ShadowState shadow_rays[]; };
 
 layout(scalar, set = 0) buffer RayQueue { uint ray_queue[]; };    // two of them, one behind the other: read and written in turn
-layout(scalar, set = 0) buffer QueueCounts { uint queue_counts[]; };  // of bounce b: rays at 2 b, shadow rays at 2 b + 1
+layout(scalar, set = 0) buffer QueueCounts { uint queue_counts[]; };
+// Of a bounce, in queue_counts: rays, shadow rays, shadow rays towards forward vertices. Twin in host/render/wavefront.cpp.
+const uint COUNTS_A_BOUNCE = 3u;
 
 // With a kernel for each class of surfaces: a queue for each, and its count at bounce * SCATTER_CLASS_COUNT + class.
 layout(scalar, set = 0) buffer ClassQueues { uint class_queues[]; };
 layout(scalar, set = 0) buffer ClassCounts { uint class_counts[]; };
 
-struct Tile {
-    uint first_pixel, pixels, first_sample, width, height, seed;
+// What the slots hold.
+struct Batch {
+#if FORWARD
+    uint first_path;
+#else
+    uint first_pixel, tile_pixels, first_sample, width, height, seed;
+#endif
 };
 
-Sampler slot_sampler(Tile tile, uint slot, uint dimension) {
-    uint pixel = tile.first_pixel + slot % tile.pixels;
-    Sampler random = start_sampler(uvec2(pixel % tile.width, pixel / tile.width), tile.first_sample + slot / tile.pixels, tile.seed);
+Sampler slot_sampler(Batch batch, uint slot, uint dimension) {
+#if FORWARD
+    Sampler random =
+        start_forward_sampler(forward_pass.pass, batch.first_path + slot, forward_pass.count, forward_pass.seed);
+#else
+    uint pixel = batch.first_pixel + slot % batch.tile_pixels;
+    Sampler random = start_sampler(uvec2(pixel % batch.width, pixel / batch.width),
+                                   batch.first_sample + slot / batch.tile_pixels, batch.seed);
+#endif
     random.dimension = dimension;
     return random;
 }
@@ -49,10 +85,34 @@ Sampler slot_sampler(Tile tile, uint slot, uint dimension) {
 void store_path(uint slot, Path path) {
     ray_origins[slot] = vec4(path.origin, path.pdf);
     ray_directions[slot] = vec4(path.direction, INFINITY);
-    path_states[slot] = PathState(path.throughput, path.depth, path.radiance, path.medium, path.reference, path.random.dimension);
+    PathState s;
+    s.throughput = path.throughput;
+    s.depth = path.depth;
+    s.reference = path.reference;
+    s.medium = path.medium;
+    s.dimension = path.random.dimension;
+#if !FORWARD
+    s.radiance = path.radiance;
+#endif
+#if BIDIRECTIONAL
+    s.vcm = path.vcm, s.vc = path.vc, s.pending = path.pending;
+#if FORWARD
+    s.light = path.light;
+    s.light_normal = path.light_normal;
+#endif
+#endif
+#if BIDIRECTIONAL || FORWARD_ONLY
+    s.flags = path.flags;
+#endif
+#if FORWARD
+    s.vertices = path.vertices;
+#elif MERGE_VERTICES
+    s.bias = path.bias;
+#endif
+    path_states[slot] = s;
 }
 
-Path load_path(Tile tile, uint slot) {
+Path load_path(Batch batch, uint slot) {
     PathState s = path_states[slot];
     vec4 origin = ray_origins[slot];
     Path path;
@@ -61,10 +121,29 @@ Path load_path(Tile tile, uint slot) {
     path.direction = ray_directions[slot].xyz;
     path.throughput = s.throughput;
     path.depth = s.depth;
-    path.radiance = s.radiance;
-    path.medium = s.medium;
     path.reference = s.reference;
-    path.random = slot_sampler(tile, slot, s.dimension);
+    path.medium = s.medium;
+    path.random = slot_sampler(batch, slot, s.dimension);
+#if FORWARD
+    path.radiance = Spectrum(0);
+#else
+    path.radiance = s.radiance;
+#endif
+#if BIDIRECTIONAL
+    path.vcm = s.vcm, path.vc = s.vc, path.pending = s.pending;
+#if FORWARD
+    path.light = s.light;
+    path.light_normal = s.light_normal;
+#endif
+#endif
+#if BIDIRECTIONAL || FORWARD_ONLY
+    path.flags = s.flags;
+#endif
+#if FORWARD
+    path.vertices = s.vertices;
+#elif MERGE_VERTICES
+    path.bias = s.bias;
+#endif
     return path;
 }
 
@@ -75,3 +154,21 @@ uint append(uint counter, bool wanted) {
     if (subgroupElect()) first = atomicAdd(queue_counts[counter], subgroupBallotBitCount(ballot));
     return subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(ballot);
 }
+
+// Queues a shadow ray, if there is one, as number `first` + count of the array. All lanes of a group do this together.
+void append_shadow_ray(ShadowRay shadow, uint target, uint first, uint counter) {
+    bool casts = shadow.t_max > 0.0;
+    uint place = append(counter, casts);
+    if (casts)
+        shadow_rays[first + place] =
+            ShadowState(shadow.origin, shadow.t_max, shadow.direction, target, shadow.contribution, shadow.medium);
+}
+
+#if FORWARD
+#if CONNECT_VERTICES
+layout(scalar, set = 0) writeonly buffer PathEnds { uvec2 path_ends[]; };  // per path: last stored vertex, their number
+void end_forward_path(Batch batch, uint slot, Path path) { path_ends[batch.first_path + slot] = path.vertices; }
+#else
+void end_forward_path(Batch batch, uint slot, Path path) {}
+#endif
+#endif

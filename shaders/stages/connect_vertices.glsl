@@ -29,7 +29,7 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     if (!is_consistent(there, -direction)) flatten(there, -light_direction);
     float frame = frame_probability(there, light_direction, -direction);
     if (!(frame > 0.0)) return no_shadow_ray();
-    SurfacePair away = surface_pair(there.surface, there.context, there.wo, -direction * there.frame);
+    SurfacePair away = surface_pair_of_any(there.surface, there.context, there.wo, -direction * there.frame);
 
     float cos_here = abs(dot(direction, s.normal)), cos_there = abs(dot(direction, there.normal));
     float towards_there = here.pdf * cos_there / distance_squared;

@@ -30,9 +30,6 @@ Path emit_light_ray(uint index) {
     path.light = light;
     path.light_normal = ray.normal;
 #endif
-#if MERGE_VERTICES
-    path.bias = Spectrum(0);
-#endif
     path.vertices = uvec2(NO_RECORD, 0u);
     return path;
 }
