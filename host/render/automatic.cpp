@@ -56,8 +56,8 @@ double best_paths(const Pilot& one, const Pilot& four) {
     const double b = std::max(0.0, (one.variance - four.variance) * 4 / 3);
     const double a = std::max(one.variance - b, 0.01 * one.variance);
     const double c = std::max(one.seconds - one.forward_seconds, 1e-9), d = std::max(one.forward_seconds, 1e-9);
-    const double exponent = std::round(0.5 * std::log2(std::max(b * c / (a * d), 1e-9)) / 2);
-    return std::clamp(std::exp2(2 * exponent), least_paths, most_paths);
+    const double exponent = std::round(0.5 * std::log2(std::max(b * c / (a * d), 1e-9)));
+    return std::clamp(std::exp2(exponent), least_paths, most_paths);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace etendue {
 // also measures how the variance of a pixel depends on the number of forward paths, a sum of one term for each
 // direction (Ershov & Voloboy 2021), and chooses the number with the least error at equal time.
 //
-// The choice depends on measured times, by powers of four in the number of paths and never in what the image
+// The choice depends on measured times, by powers of two in the number of paths and never in what the image
 // converges to.
 AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings);
 

@@ -10,10 +10,11 @@ namespace {
 // Twin of struct ForwardPass in shaders/lib/forward_pass.glsl.
 struct ForwardPass {
     uint32_t receiver, width, height, pass, seed, count;
-    float merge_scale, path_flux, inverse_power, splat_unit;
+    float merge_scale, short_scale, path_flux, inverse_power, splat_unit;
 };
 
 constexpr double first_radius_pixels = 1.0;  // radius of merging in the first pass, in widths of a pixel
+constexpr double short_edge_pixels = 32.0;    // so much shorter than the image that longer edges connect well
 constexpr uint32_t vertices_a_path = 16;     // for which room is kept, if there is as much
 
 }  // namespace
@@ -75,6 +76,7 @@ void ForwardRays::write_pass(uint64_t pass, uint32_t seed) {
     values.seed = seed + count_ * 0x9E3779B9u;  // other counts take other sequences
     values.count = count_;
     values.merge_scale = float(first_radius_pixels * merge_radius_factor(pass) / std::sqrt(pixels));
+    values.short_scale = float(short_edge_pixels / std::sqrt(pixels));
     values.path_flux = float(power_ / count_);
     values.inverse_power = float(1 / power_);
     values.splat_unit = float(power_ / (4 * std::pow(std::numbers::pi * radius_, 2)));

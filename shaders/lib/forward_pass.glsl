@@ -7,6 +7,7 @@ struct ForwardPass {
     uint seed;
     uint count;           // forward paths
     float merge_scale;    // radius of merging, in widths of what the film covers there
+    float short_scale;    // edges below it are short, in the same widths
     float path_flux;      // power of all lights / count, lm
     float inverse_power;  // 1 / power of all lights
     float splat_unit;     // cd/m², about the mean radiance of the scene

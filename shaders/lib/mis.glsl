@@ -6,9 +6,10 @@
 // - Densities of rays are per étendue (area perpendicular to the ray times solid angle), so lights and receivers near
 //   and far, points and surfaces need no cases of their own.
 // - Which light a point samples depends on the point, so a forward path learns the density of that only at its first hit.
-// - Merging happens only at vertices that light reaches from a narrow surface (MATERIAL_NARROW) and leaves towards another, or
-//   towards the receiver: everything else is sampled well enough without, and a query costs as much as a ray. A path learns
-//   whether it may have merged at a vertex one event later (Path.pending).
+// - Merging happens only at vertices that light reaches from a narrow surface (MATERIAL_NARROW), and leaves towards another,
+//   towards the receiver, or towards a vertex nearby, where connections would have huge values: everything else is sampled well
+//   enough without, and a query costs as much as a ray. A path learns whether it may have merged at a vertex one event later
+//   (Path.pending).
 // - The merging radius varies over space, so vc is kept without a twin in units of merging (dVM = dVC / density there).
 #include "interfaces/light_source.glsl"
 #include "interfaces/receiver.glsl"
@@ -42,6 +43,15 @@ float merge_density(vec3 position) { return PI * square(merge_radius(position)) 
 float merge_density(vec3 position) { return 0.0; }
 #endif
 
+// Whether the edge between a vertex that merges and the next one towards the receiver is short enough to ask for merging.
+bool is_short_edge(vec3 merging, vec3 next) {
+#if MERGE_VERTICES
+    return distance(merging, next) < forward_pass.short_scale * receiver_footprint(forward_pass.receiver, merging, film_aspect());
+#else
+    return false;
+#endif
+}
+
 bool is_narrow(uint material) { return (materials[material].flags & MATERIAL_NARROW) != 0u; }
 
 // Vertices are connected with one of several of a forward path: that counts as so much of a connection to each. (Any number is
@@ -72,11 +82,13 @@ VertexMis vertex_mis(Path path, SurfacePoint p) {
 #if FORWARD
     m.vcm = path.vcm * to_area * (starts ? start_connection_pdf(path, p.position) : distance_squared);
     m.merging = after_narrow ? merge_density(p.position) : 0.0;
+    bool merged_before = is_narrow(p.material) || is_short_edge(path.reference, p.position);
 #else
     m.vcm = path.vcm * to_area * (starts && (path.flags & PATH_PARALLEL) != 0u ? 1.0 : distance_squared);
-    m.merging = after_narrow || starts ? merge_density(p.position) : 0.0;
+    m.merging = starts || after_narrow || is_short_edge(p.position, path.reference) ? merge_density(p.position) : 0.0;
+    bool merged_before = is_narrow(p.material);
 #endif
-    m.vc = (path.vc + (is_narrow(p.material) ? path.pending : 0.0)) * to_area;
+    m.vc = (path.vc + (merged_before ? path.pending : 0.0)) * to_area;
     return m;
 }
 

@@ -23,7 +23,7 @@ struct Path {
     Sampler random;
 #if BIDIRECTIONAL
     float vcm, vc;        // lib/mis.glsl
-    float pending;        // what merging at the last event adds to vc if the next one is at a narrow surface
+    float pending;        // what merging at the last event adds to vc if the next one allows it
 #if FORWARD
     uint light;           // where the path started
     vec3 light_normal;    // of its surface there
