@@ -13,9 +13,10 @@ struct ForwardPass {
     float merge_scale, short_scale, path_flux, inverse_power, splat_unit;
 };
 
-constexpr double first_radius_pixels = 1.0;  // radius of merging in the first pass, in widths of a pixel
-constexpr double short_edge_pixels = 32.0;    // so much shorter than the image that longer edges connect well
-constexpr uint32_t vertices_a_path = 16;     // for which room is kept, if there is as much
+constexpr double short_edge_pixels = 32.0;  // so much shorter than the image that longer edges connect well
+constexpr uint32_t vertices_a_path = 16;    // for which room is kept, if there is as much
+// At least. Longer paths do not happen: Russian roulette lets one live so long with probability 1e-21.
+constexpr uint64_t least_vertices = 1024;
 
 }  // namespace
 
@@ -41,9 +42,10 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
         const auto make = [&](const std::string& file, const BufferTable& table, const std::string& defines) {
             return make_kernel(device, scene, file, table, defines);
         };
+        const uint64_t most = std::max(least_vertices, uint64_t(count_) * vertices_a_path);
         const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex;
-        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, 1, uint64_t(count_) * vertices_a_path)),
-                          make, settings.binding_bytes);
+        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least_vertices, most)), make,
+                          settings.binding_bytes);
         path_ends_ = Buffer(device, uint64_t(count_) * 8, "PathEnds");
     }
     BufferTable table = buffers();
@@ -75,7 +77,7 @@ void ForwardRays::write_pass(uint64_t pass, uint32_t seed) {
     values.pass = uint32_t(pass);
     values.seed = seed + count_ * 0x9E3779B9u;  // other counts take other sequences
     values.count = count_;
-    values.merge_scale = float(first_radius_pixels * merge_radius_factor(pass) / std::sqrt(pixels));
+    values.merge_scale = float(settings_.merge_radius * merge_radius_factor(pass) / std::sqrt(pixels));
     values.short_scale = float(short_edge_pixels / std::sqrt(pixels));
     values.path_flux = float(power_ / count_);
     values.inverse_power = float(1 / power_);
@@ -92,7 +94,7 @@ void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, Ker
         if (!vertices_) return;
         const VertexMap::Counts counts = vertices_->counts();
         expected_vertices_ = counts.stored;
-        if (counts.wanted == counts.stored) break;
+        if (counts.wanted == counts.stored || count_ == 1) break;
         count_ = std::max(1u, uint32_t(0.9 * count_ * counts.stored / counts.wanted));
         splats_.fill(0);
         splits_++;

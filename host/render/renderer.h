@@ -36,9 +36,10 @@ struct RenderSettings {
     uint32_t seed = 0;
     Algorithm algorithm = Algorithm::automatic;
     Schedule schedule = Schedule::automatic;
-    double forward_paths = 1;  // a pixel and pass, where there are any
+    double forward_paths = 1;               // a pixel and pass, where there are any
     std::optional<AlgorithmChoice> choice;  // of an earlier run: taken instead of algorithm and forward_paths
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
+    float merge_radius = 1;                       // of the first pass, in widths of a pixel; > 0
     uint64_t binding_bytes = 0;  // a larger film is written through its address; 0 = what the device can bind
 };
 

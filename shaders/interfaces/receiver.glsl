@@ -6,6 +6,7 @@
 //                               I * density / pdf to the mean over the film
 //   float          NAME_footprint(R r, vec3 point, float film_aspect)   square root of the area that the whole film covers at
 //                               the point's distance, m; > 0, continuous, also for points out of view
+//   float          NAME_footprint_slope(R r, float film_aspect)   most by which the footprint changes over a metre, m/m
 //
 // `film` runs over [0,1]², x to the right, y down; film_aspect = width / height of the image. World space; node transforms
 // may scale, shear and mirror.
@@ -69,6 +70,16 @@ float receiver_footprint(uint ref, vec3 point, float film_aspect) {
     float result = 1.0;
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_footprint(name##_record(record_index(ref)), point, film_aspect); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+float receiver_footprint_slope(uint ref, float film_aspect) {
+    float result = 0.0;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_footprint_slope(name##_record(record_index(ref)), film_aspect); break;
         RECEIVER_CLASSES(CASE)
 #undef CASE
     }

@@ -28,12 +28,10 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
     // A direction that the shading frame puts on one side of the surface and the surface on the other carries nothing.
     if (!straight && dot(direction, s.normal) * b.wi.z <= 0.0) return false;
 #if FORWARD
-    if (!straight) {
-        float probability = frame_probability(s, -path.direction, direction);
-        if (!is_seen_from(s, direction) || !(probability > 0.0)) return false;
-        path.throughput *= adjoint_correction(s, -path.direction, direction) / probability;
-        if ((b.event & EVENT_DELTA) == 0u) b.pdf *= probability;
-    }
+    float probability = frame_probability(s, -path.direction, direction);
+    if (!is_seen_from(s, direction) || !(probability > 0.0)) return false;
+    path.throughput *= adjoint_correction(s, -path.direction, direction) / probability;
+    if ((b.event & EVENT_DELTA) == 0u) b.pdf *= probability;
 #endif
     path.throughput *= b.weight;
     if (!straight) {

@@ -37,7 +37,12 @@ struct VertexMis {
 VertexMis vertex_mis(Path path, SurfacePoint p) { return VertexMis(0.0, 0.0, 0.0); }
 #else
 #if MERGE_VERTICES
-float merge_radius(vec3 position) { return forward_pass.merge_scale * receiver_footprint(forward_pass.receiver, position, film_aspect()); }
+// Images of few pixels and wide angles get less than they ask for: lib/vertex_grid.glsl wants radii that change slowly.
+float merge_radius(vec3 position) {
+    float slope = receiver_footprint_slope(forward_pass.receiver, film_aspect());
+    float scale = min(forward_pass.merge_scale, 0.05 / max(slope, 1e-6));
+    return scale * receiver_footprint(forward_pass.receiver, position, film_aspect());
+}
 float merge_density(vec3 position) { return PI * square(merge_radius(position)) * float(forward_pass.count); }
 #else
 float merge_density(vec3 position) { return 0.0; }
@@ -75,7 +80,8 @@ float start_connection_pdf(Path path, vec3 position) {
 
 VertexMis vertex_mis(Path path, SurfacePoint p) {
     VertexMis m;
-    float to_area = 1.0 / abs(dot(path.direction, p.geometric_normal));
+    // A ray along the surface, to the last bit, has no density there: it counts as one that hardly meets it.
+    float to_area = 1.0 / max(abs(dot(path.direction, p.geometric_normal)), 1e-12);
     bool starts = (path.flags & PATH_STARTS) != 0u, after_narrow = (path.flags & PATH_AFTER_NARROW) != 0u;
     vec3 d = p.position - path.reference;
     float distance_squared = dot(d, d);

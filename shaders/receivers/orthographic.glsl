@@ -31,3 +31,5 @@ ReceiverSample orthographic_connect(OrthographicCamera r, vec3 point, vec2 u, fl
 float orthographic_footprint(OrthographicCamera r, vec3 point, float film_aspect) {
     return sqrt(orthographic_area(orthographic_frame(r, film_aspect)));
 }
+
+float orthographic_footprint_slope(OrthographicCamera r, float film_aspect) { return 0.0; }

@@ -38,8 +38,12 @@ ReceiverSample perspective_connect(PerspectiveCamera r, vec3 point, vec2 u, floa
 }
 
 // The solid angle of the whole film as if it were small, at the distance of the point but for one that no scene resolves.
-float perspective_footprint(PerspectiveCamera r, vec3 point, float film_aspect) {
+float perspective_footprint_slope(PerspectiveCamera r, float film_aspect) {
     mat3 f = perspective_frame(r, film_aspect);
+    return inversesqrt(perspective_density(f, f[2]));
+}
+
+float perspective_footprint(PerspectiveCamera r, vec3 point, float film_aspect) {
     float distance = max(length(point - r.placement.world_from_local[3]), 1e-12);
-    return distance * inversesqrt(perspective_density(f, f[2]));
+    return distance * perspective_footprint_slope(r, film_aspect);
 }

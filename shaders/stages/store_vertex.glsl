@@ -22,7 +22,7 @@ void store_vertex(inout Path path, uint path_index, SurfacePoint p, Hit hit, Ver
     uint place = append_light_vertex(v);
     if (place == NO_LIGHT_VERTEX) return;  // the host repeats the pass with fewer paths
 #if MERGE_VERTICES
-    if (merges) enter_grid(place, p.position, merge_radius(p.position), path_index * 64u + min(path.vertices.y, 63u));
+    if (merges) enter_grid(place, p.position, merge_radius(p.position), path.vertices.y * forward_pass.count + path_index);
 #endif
     path.vertices = uvec2(place, path.vertices.y + 1u);
 }

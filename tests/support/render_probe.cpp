@@ -106,16 +106,21 @@ int SceneBuilder::accessor(const void* data, size_t size, int component_type, si
 }
 
 void SceneBuilder::mesh(const std::vector<glm::vec3>& positions, const std::vector<uint32_t>& indices,
-                        int material, const Place& place) {
+                        int material, const Place& place, const std::vector<glm::vec3>& normals,
+                        const std::vector<glm::vec2>& uvs) {
     glm::vec3 lo(INFINITY), hi(-INFINITY);
     for (const glm::vec3& p : positions) lo = glm::min(lo, p), hi = glm::max(hi, p);
     const int position = accessor(positions.data(), positions.size() * 12, 5126, positions.size(), "VEC3");
     document["accessors"].back()["min"] = {lo.x, lo.y, lo.z};
     document["accessors"].back()["max"] = {hi.x, hi.y, hi.z};
     const int index = accessor(indices.data(), indices.size() * 4, 5125, indices.size(), "SCALAR");
+    json attributes = {{"POSITION", position}};
+    if (!normals.empty())
+        attributes["NORMAL"] = accessor(normals.data(), normals.size() * 12, 5126, normals.size(), "VEC3");
+    if (!uvs.empty())
+        attributes["TEXCOORD_0"] = accessor(uvs.data(), uvs.size() * 8, 5126, uvs.size(), "VEC2");
     document["meshes"].push_back(
-        {{"primitives",
-          {{{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", material}}}}});
+        {{"primitives", {{{"attributes", attributes}, {"indices", index}, {"material", material}}}}});
     node({{"mesh", document["meshes"].size() - 1}}, place);
 }
 
@@ -145,6 +150,10 @@ void SceneBuilder::medium(const std::string& name, json parameters) {
 void SceneBuilder::transform(const glm::dvec3& translation, double scale) {
     document["nodes"][0]["translation"] = {translation.x, translation.y, translation.z};
     document["nodes"][0]["scale"] = {scale, scale, scale};
+}
+
+void SceneBuilder::scale_last(const glm::dvec3& scale) {
+    document["nodes"].back()["scale"] = {scale.x, scale.y, scale.z};
 }
 
 SceneDescription SceneBuilder::import(const std::filesystem::path& file) const {
@@ -178,11 +187,27 @@ RenderSettings settings_of(const Scene& scene, const RenderPlan& plan) {
     settings.width = plan.width, settings.height = plan.height;
     settings.schedule = plan.schedule;
     settings.seed = plan.first_seed;
+    settings.algorithm = plan.algorithm;
+    settings.merge_radius = plan.merge_radius;
+    if (plan.vertex_bytes) settings.vertex_bytes = plan.vertex_bytes;
     for (const Receiver& receiver : scene.receivers)
         if (settings.receiver == no_record && (plan.receiver.empty() || receiver.name == plan.receiver))
             settings.receiver = receiver.ref;
     REQUIRE_MESSAGE(settings.receiver != no_record, "no receiver ", plan.receiver);
     return settings;
+}
+
+// By way of their list of names and values.
+void add_counters(RenderCounters& sum, const RenderCounters& counters) {
+    json total = to_json(sum);
+    const json added = to_json(counters);
+    for (const auto& [name, value] : added.items()) {
+        if (value.is_number_float())
+            total[name] = total[name].get<double>() + value.get<double>();
+        else
+            total[name] = total[name].get<uint64_t>() + value.get<uint64_t>();
+    }
+    sum = counters_from_json(total);
 }
 
 }  // namespace
@@ -206,12 +231,10 @@ Estimates render_estimates(Scene& scene, const RenderPlan& plan) {
             for (size_t i = 0; i < values.size(); ++i) pixels[3 * i + size_t(c)] = values[i];
         }
         for (size_t i = 0; i < pixels.size(); ++i) result.mean[i] += double(pixels[i]) / plan.seeds;
-        result.counters.non_finite += renderer.counters().non_finite;
-        result.counters.depth_limit += renderer.counters().depth_limit;
-        result.counters.rays += renderer.counters().rays;
-        result.counters.escaped += renderer.counters().escaped;
+        add_counters(result.counters, renderer.counters());
     }
-    CHECK_MESSAGE(result.counters.non_finite == 0, "samples were not finite");
+    CHECK_MESSAGE(result.counters.non_finite + result.counters.forward_non_finite == 0,
+                  "samples were not finite");
     return result;
 }
 
@@ -301,6 +324,17 @@ Agreement agreement(const Estimates& e, const std::vector<double>& expected, uin
     result.rms_z = std::sqrt(squares / double(result.tests));
     result.holds = result.least_p >= result.p_limit;
     return result;
+}
+
+Agreement agreement(const Estimates& a, const Estimates& b, uint32_t tile, const Window& window) {
+    REQUIRE(a.mean.size() == b.mean.size());
+    REQUIRE(a.seeds == b.seeds);
+    // Seed by seed: the differences, about the mean of b.
+    Estimates difference = a;
+    for (uint32_t s = 0; s < a.seeds; ++s)
+        for (size_t i = 0; i < a.mean.size(); ++i)
+            difference.images[s][i] = float(double(a.images[s][i]) - b.images[s][i] + b.mean[i]);
+    return agreement(difference, b.mean, tile, {}, window);
 }
 
 std::string describe(const Agreement& a) {

@@ -38,13 +38,15 @@ class SceneBuilder {
     void rectangle(double width, double height, int material, const Place& place);
     void light(nlohmann::json punctual, const Place& place);  // of KHR_lights_punctual
     void mesh(const std::vector<glm::vec3>& positions, const std::vector<uint32_t>& indices, int material,
-              const Place& place);
+              const Place& place, const std::vector<glm::vec3>& normals = {},
+              const std::vector<glm::vec2>& uvs = {});
     void orthographic(double ymag, const Place& place, const std::string& name = "camera");
     void perspective(double yfov, const Place& place, const std::string& name = "camera");
     void environment(nlohmann::json radiance);
     void medium(const std::string& name, nlohmann::json parameters);
     void transform(const glm::dvec3& translation, double scale);
-    nlohmann::json& optics();  // ETD_optics of the root
+    void scale_last(const glm::dvec3& scale);  // the node that was added last, along its own axes
+    nlohmann::json& optics();                  // ETD_optics of the root
     SceneDescription import(const std::filesystem::path& file = "scene.gltf") const;
 
   private:
@@ -60,6 +62,9 @@ struct RenderPlan {
     std::string receiver = "";  // name; empty = the first
     Schedule schedule = Schedule::automatic;
     uint32_t first_seed = 1;
+    Algorithm algorithm = Algorithm::backward;
+    float merge_radius = 1;     // as in RenderSettings
+    uint64_t vertex_bytes = 0;  // 0 = as in RenderSettings
 };
 
 // Means and their standard errors from images of independent seeds. Three values a pixel: R, G, B.
@@ -97,6 +102,8 @@ struct Agreement {
 };
 Agreement agreement(const Estimates& estimates, const std::vector<double>& expected, uint32_t tile,
                     const std::vector<double>& expected_sd = {}, const Window& window = {});
+// The same of two estimates with as many independent seeds each, neither of which is without noise.
+Agreement agreement(const Estimates& a, const Estimates& b, uint32_t tile, const Window& window = {});
 std::string describe(const Agreement& agreement);
 
 struct WindowMean {

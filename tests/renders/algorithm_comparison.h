@@ -1,0 +1,57 @@
+// Images of forward and of bidirectional rays against those of backward rays alone, from independent seeds.
+#pragma once
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/support/render_probe.h"
+
+namespace etendue {
+
+struct Comparison {
+    uint32_t width = 32, height = 24, seeds = 16;
+    uint32_t backward = 256, forward = 128, bidirectional = 64;  // passes; 0 = not compared
+    double tolerance = 0.002;   // of the mean over the image, besides four standard errors
+    float merge_radius = 0.1f;  // bias of merging grows with its square
+};
+
+// Pixels and tiles of 8 x 8 by Student's t over the seeds: a false alarm in 1000 runs each. The mean of all
+// by four standard errors: one in 1000 (15 degrees of freedom). Seeds are fixed, so a build either passes
+// always or never.
+inline void check_against_backward(Scene& scene, const Comparison& c) {
+    RenderPlan plan;
+    plan.width = c.width, plan.height = c.height, plan.seeds = c.seeds;
+    plan.merge_radius = c.merge_radius;
+    plan.algorithm = Algorithm::backward, plan.passes = c.backward;
+    const Estimates expected = render_estimates(scene, plan);
+    const auto check = [&](Algorithm algorithm, uint32_t passes, uint32_t first_seed) {
+        if (passes == 0) return;
+        const std::string name = algorithm_name(algorithm);
+        plan.algorithm = algorithm, plan.passes = passes, plan.first_seed = first_seed;
+        const Estimates e = render_estimates(scene, plan);
+        const Agreement pixels = agreement(e, expected, 1), tiles = agreement(e, expected, 8);
+        const WindowMean ours = window_mean(e), theirs = window_mean(expected);
+        const double error = std::hypot(ours.standard_error, theirs.standard_error);
+        const double bias = ours.mean - theirs.mean;
+        MESSAGE(name, ": pixels ", describe(pixels), "; tiles ", describe(tiles), "; bias ",
+                100 * bias / theirs.mean, " % +- ", 100 * error / theirs.mean, " %");
+        CAPTURE(name);
+        CHECK(theirs.mean > 0);
+        CHECK(pixels.holds);
+        CHECK(tiles.holds);
+        CHECK(pixels.rms_z < 1.15);
+        CHECK(tiles.rms_z < 1.4);
+        CHECK(std::fabs(bias) < c.tolerance * theirs.mean + 4 * error);
+        CHECK(error < 0.005 * theirs.mean);  // otherwise the check above says little
+    };
+    check(Algorithm::forward, c.forward, 1001);
+    check(Algorithm::bidirectional, c.bidirectional, 2001);
+}
+
+inline void check_against_backward(const SceneBuilder& builder, const Comparison& c = {},
+                                   const std::filesystem::path& file = "scene.gltf") {
+    Scene scene = compile_test_scene(builder.import(file));
+    check_against_backward(scene, c);
+}
+
+}  // namespace etendue

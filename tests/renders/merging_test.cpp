@@ -1,0 +1,115 @@
+// Merging is right in the limit and wrong before it by what its radius says: light that a mirror throws on a
+// floor which is itself seen in that mirror, so that nothing else brings it.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "host/render/forward_rays.h"
+#include "tests/renders/algorithm_comparison.h"
+
+using namespace etendue;
+using nlohmann::json;
+
+namespace {
+
+constexpr double half_turn = 0.70710678118654752;
+constexpr uint32_t pixels = 24;
+constexpr double view = 1;            // m, width of what is seen of the floor, around the origin
+constexpr double reflectance = 1e-4;  // hardly any light comes back to the floor
+constexpr double intensity = 2e4;     // cd
+const glm::dvec3 lamp(1.5, 0, 0.8), image_of_lamp(2.2, 0, 1.5);
+
+// The mirror lies in x + z = 3. Parallel rays of the camera along +x meet it and go straight down: a point of
+// the film z - 3 to the right shows the floor at x = 3 - z.
+SceneBuilder mirrored_floor() {
+    SceneBuilder s;
+    s.orthographic(view / 2, {{-3, 0, 3}, {0, -half_turn, 0, half_turn}});
+    const double turn = std::numbers::pi / 8;  // half of that from +z to (1, 0, 1) about +y
+    s.rectangle(8, 4, s.surface({{"class", "conductor"}, {"reflectance", 1}}),
+                {{0, 0, 3}, {0, std::sin(turn), 0, std::cos(turn)}});
+    s.light({{"type", "point"}, {"intensity", intensity}}, {lamp});
+    return s;
+}
+
+double illuminance(const glm::dvec3& lamp, double x, double y) {
+    const glm::dvec3 d = lamp - glm::dvec3(x, y, 0);
+    return intensity * d.z / std::pow(glm::dot(d, d), 1.5);
+}
+
+// The mean of the illuminance that the mirror brings over the disk of a merging radius, by rings.
+double merged_illuminance(double x, double y, double radius) {
+    double sum = 0;
+    for (int i = 0; i < 4; ++i)
+        for (int k = 0; k < 8; ++k) {
+            const double r = radius * std::sqrt((i + 0.5) / 4),
+                         phi = 2 * std::numbers::pi * (k + 0.5 * (i % 2)) / 8;
+            sum += illuminance(image_of_lamp, x + r * std::cos(phi), y + r * std::sin(phi)) / 32;
+        }
+    return sum;
+}
+
+// What `passes` passes show on average; radius: of the first one, m; 0 = without bias.
+std::vector<double> floor_radiance(double radius, uint32_t passes) {
+    std::vector<double> result(3 * pixels * pixels);
+    constexpr double pixel = view / pixels;
+    for (uint32_t py = 0; py < pixels; ++py)
+        for (uint32_t px = 0; px < pixels; ++px) {
+            double sum = 0;
+            for (int i = 0; i < 4; ++i) {
+                const double x = view / 2 - (px + (i % 2 + 0.5) / 2) * pixel;
+                const double y = view / 2 - (py + (i / 2 + 0.5) / 2) * pixel;
+                double merged = 0;
+                for (uint32_t k = 0; k < passes; ++k)
+                    merged += merged_illuminance(x, y, radius * merge_radius_factor(k)) / passes;
+                sum += (illuminance(lamp, x, y) + merged) / 4;
+            }
+            for (size_t c = 0; c < 3; ++c)
+                result[3 * (size_t(py) * pixels + px) + c] = reflectance / std::numbers::pi * sum;
+        }
+    return result;
+}
+
+RenderPlan floor_plan(double radius, uint32_t passes, uint32_t seeds) {
+    RenderPlan plan;
+    plan.width = plan.height = pixels;
+    plan.passes = passes, plan.seeds = seeds;
+    plan.algorithm = Algorithm::bidirectional;
+    plan.merge_radius = float(radius * pixels / view);
+    return plan;
+}
+
+}  // namespace
+
+TEST_CASE("light that only merging brings is that of the mirrored lamp, but for the bias of the radius") {
+    SceneBuilder s = mirrored_floor();
+    s.rectangle(8, 8, s.lambertian(reflectance), at(0, 0, 0));
+    Scene scene = compile_test_scene(s.import());
+    struct {
+        double radius;  // m
+        uint32_t passes, seeds;
+    } const runs[] = {{0.1, 512, 16}, {0.8, 4, 64}, {0.8, 256, 16}};
+    double bias[3];
+    for (int i = 0; i < 3; ++i) {
+        const auto [radius, passes, seeds] = runs[i];
+        CAPTURE(radius);
+        CAPTURE(passes);
+        const Estimates e = render_estimates(scene, floor_plan(radius, passes, seeds));
+        const std::vector<double> exact = floor_radiance(0, 1), merged = floor_radiance(radius, passes);
+        const Agreement a = agreement(e, merged, 1), tiles = agreement(e, merged, 8);
+        const WindowMean mean = window_mean(e);
+        const double wanted = window_mean(merged, pixels, {});
+        bias[i] = mean.mean / window_mean(exact, pixels, {}) - 1;
+        MESSAGE("radius ", radius, " m, ", passes, " passes: pixels ", describe(a), "; tiles ",
+                describe(tiles), "; ", 100 * (mean.mean / wanted - 1), " % +- ",
+                100 * mean.standard_error / wanted, " % off what the radius says, bias ", 100 * bias[i],
+                " %");
+        CHECK(a.holds);
+        CHECK(tiles.holds);
+        CHECK(std::fabs(mean.mean - wanted) < 0.0005 * wanted + 4 * mean.standard_error);
+        CHECK(mean.standard_error < 0.0015 * wanted);
+    }
+    CHECK(std::fabs(bias[0]) < 0.004);
+    CHECK(std::fabs(bias[1]) > 0.005);
+    CHECK(std::fabs(bias[2]) < 0.5 * std::fabs(bias[1]));
+}
