@@ -291,3 +291,38 @@ TEST_CASE("algorithms agree: coarse mirrors and glass with smooth normals") {
                       at(0.9, -1.1, 0.1));
     check_against_backward(s);
 }
+
+TEST_CASE("algorithms agree: shapes and copies of a mesh under scales that differ by axis") {
+    SceneBuilder s;
+    add_room(s);
+    const int lamp = s.black_emitter({3, 3.3, 3.6});
+    s.sphere(0.5, lamp, at(0, 1.3, 0));
+    s.scale_last({1.6, 0.5, 1});
+    s.medium("glass", {{"ior", 1.5}, {"absorption", 0.3}});
+    s.sphere(0.6, s.material({{"surface", {{"class", "dielectric"}, {"alpha", 0.2}}}, {"inside", "glass"}}),
+             at(-1, -1.1, 0.3));
+    s.scale_last({1, 1.3, 0.6});
+    s.sphere(0.6, s.surface(metal(0.2)), at(1, -1.2, 0.3));
+    s.scale_last({1.2, 0.7, 0.8});
+    add_coarse_sphere(s, 0.5f, s.lambertian({0.4, 0.6, 0.8}), {{0, -1.3, -0.9}, {0.1, 0.2, 0.3, 0.927}});
+    s.scale_last({1.4, 0.6, 0.9});
+    check_against_backward(s);
+}
+
+TEST_CASE("algorithms agree: a narrow beam from near and from far") {
+    for (const double distance : {1.0, 1000.0}) {
+        CAPTURE(distance);
+        const double angle = 0.4 / distance;  // the beam is 0.8 m wide where it ends
+        SceneBuilder s;
+        s.rectangle(2, 2, s.lambertian({0.6, 0.5, 0.4}), at(0, 0, 0));
+        s.rectangle(0.5, 0.5, s.lambertian(0.7), facing_x(-0.4, 0, 0.25));
+        s.light({{"type", "spot"},
+                 {"intensity", 10 * distance * distance},
+                 {"spot", {{"innerConeAngle", angle / 2}, {"outerConeAngle", angle}}}},
+                at(0.05, 0, distance));
+        s.orthographic(0.6, at(0, 0, 0.9));
+        Comparison c;
+        c.width = c.height = 24;
+        check_against_backward(s, c);
+    }
+}

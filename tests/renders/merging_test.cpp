@@ -113,3 +113,51 @@ TEST_CASE("light that only merging brings is that of the mirrored lamp, but for 
     CHECK(std::fabs(bias[1]) > 0.005);
     CHECK(std::fabs(bias[2]) < 0.5 * std::fabs(bias[1]));
 }
+
+// A thin wall at x = 0 keeps both lamps' light from the floor behind it. A disk of the merging radius reaches
+// across it, so the floor next to it is too bright on the one side and too dark on the other: by the radius,
+// not by its square.
+TEST_CASE("what merging leaks past a thin wall shrinks as the radius does") {
+    SceneBuilder s = mirrored_floor();
+    // A double sheet under the floor, nearer than the radius and brightly lit from below by way of a mirror:
+    // nothing of it may show.
+    const int white = s.lambertian(reflectance);
+    s.rectangle(8, 8, white, at(0, 0, 0));
+    s.rectangle(8, 8, white, at(0, 0, -0.01));
+    add_box(s, {8, 8, 0.01f}, white, false, at(0, 0, -0.03));
+    s.rectangle(8, 8, s.surface({{"class", "conductor"}, {"reflectance", 1}}), at(0, 0, -2));
+    s.light({{"type", "point"}, {"intensity", 100 * intensity}}, at(0, 0, -1));
+    s.rectangle(1, 8, s.surface({{"class", "absorber"}}), facing_x(0, 0, 0.5));
+    Scene scene = compile_test_scene(s.import());
+    struct {
+        uint32_t passes, seeds;
+    } const runs[] = {{4, 64}, {512, 16}};
+    constexpr double radius = 0.15;
+    const double at_wall = reflectance / std::numbers::pi * illuminance(image_of_lamp, 0, 0);
+    const Window bright = {0, 0, pixels / 2, pixels}, dark = {pixels / 2, 0, pixels / 2, pixels};
+    const std::vector<double> exact = floor_radiance(0, 1);
+    double leak[2];
+    for (int i = 0; i < 2; ++i) {
+        const auto [passes, seeds] = runs[i];
+        CAPTURE(passes);
+        const Estimates e = render_estimates(scene, floor_plan(radius, passes, seeds));
+        // The part of a disk of radius r that lies across a line at distance a, integrated over a: 2 r / (3
+        // pi).
+        double mean_radius = 0;
+        for (uint32_t k = 0; k < passes; ++k) mean_radius += radius * merge_radius_factor(k) / passes;
+        const double wanted = at_wall * 2 * mean_radius / (3 * std::numbers::pi) / (view / 2);
+        const WindowMean behind = window_mean(e, dark), before = window_mean(e, bright);
+        const double lost = window_mean(exact, pixels, bright) - before.mean;
+        MESSAGE(passes, " passes: behind the wall ", behind.mean, " +- ", behind.standard_error,
+                ", by the radius ", wanted, "; before it ", lost, " +- ", before.standard_error,
+                " is missing");
+        CHECK(std::fabs(behind.mean - wanted) < 0.04 * wanted + 4 * behind.standard_error);
+        CHECK(behind.standard_error < 0.05 * wanted);
+        CHECK(std::fabs(lost - wanted) < 0.1 * wanted + 4 * before.standard_error);
+        leak[i] = behind.mean;
+        // Beyond the radius it is dark.
+        const Window far = {uint32_t(pixels * (0.5 + radius / view)) + 1, 0, pixels / 4, pixels};
+        CHECK(window_mean(e, far).mean < 1e-3 * at_wall);
+    }
+    CHECK(leak[1] < 0.55 * leak[0]);
+}
