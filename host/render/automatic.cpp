@@ -19,9 +19,8 @@ constexpr double most_paths = 16, least_paths = 0.25;  // forward paths a pixel
 
 struct Pilot {
     Image image;
-    double variance = 0;          // mean squared relative error of one pass
-    double seconds = 0;           // of one pass
-    double forward_seconds = 0;   // of it, in proportion to the number of forward paths
+    double variance = 0;  // mean squared relative error of one pass
+    double seconds = 0;   // of one pass
 };
 
 Pilot run_pilot(Device& device, Scene& scene, RenderSettings settings, Algorithm algorithm, double paths) {
@@ -38,8 +37,6 @@ Pilot run_pilot(Device& device, Scene& scene, RenderSettings settings, Algorithm
     const double error = estimated_relative_error(pilot.image);
     pilot.variance = error * error * pilot_passes;
     pilot.seconds = renderer.seconds() / pilot_passes;
-    for (const auto& [kernel, timing] : renderer.timings())
-        if (kernel != "trace_paths") pilot.forward_seconds += timing.seconds / pilot_passes;
     return pilot;
 }
 
@@ -55,7 +52,8 @@ bool agree(const Image& a, const Image& b) {
 double best_paths(const Pilot& one, const Pilot& four) {
     const double b = std::max(0.0, (one.variance - four.variance) * 4 / 3);
     const double a = std::max(one.variance - b, 0.01 * one.variance);
-    const double c = std::max(one.seconds - one.forward_seconds, 1e-9), d = std::max(one.forward_seconds, 1e-9);
+    const double d = std::max((four.seconds - one.seconds) / 3, 0.01 * one.seconds);
+    const double c = std::max(one.seconds - d, 0.01 * one.seconds);
     const double exponent = std::round(0.5 * std::log2(std::max(b * c / (a * d), 1e-9)));
     return std::clamp(std::exp2(exponent), least_paths, most_paths);
 }
