@@ -45,9 +45,9 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
         render->add_option("--passes", arguments.passes, "Stop after N passes: paths a pixel (default: 64)");
     auto* seconds =
         render->add_option("--time", arguments.seconds, "Stop after that many seconds of rendering");
-    auto* error =
-        render->add_option("--error", arguments.error,
-                           "Stop when the estimated error (standard error of the mean, relative) is E");
+    auto* error = render->add_option(
+        "--error", arguments.error,
+        "Stop when the relative error (root of the relMSE) is below E, with 95 % confidence");
     passes->option_text("N")->excludes(seconds)->excludes(error);
     seconds->option_text("SEC")->excludes(error);
     error->option_text("E");

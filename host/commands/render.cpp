@@ -115,7 +115,9 @@ int render_command(const RenderOptions& given) {
     status.passes_before = renderer.passes();
     const uint64_t rays_before = all_rays(renderer.counters());
     const auto render_start = Clock::now();
-    double next_checkpoint = checkpoint_seconds, next_estimate = 0;
+    double next_checkpoint = checkpoint_seconds;
+    ErrorGoal error_goal{options.error.value_or(0)};
+    bool accurate = false;
     bool done = options.passes && renderer.passes() >= *options.passes;
     while (!done && !interrupted()) {
         double batch = batch_seconds;
@@ -126,15 +128,13 @@ int render_command(const RenderOptions& given) {
         status.passes = renderer.passes();
         status.seconds = seconds_since(render_start);
         status.rays = double(all_rays(renderer.counters()) - rays_before);
-        // Developing the film costs time: as often as it takes a tenth of the work at most.
-        if (options.error && status.seconds >= next_estimate) {
-            const auto begin = Clock::now();
-            status.error = estimated_relative_error(renderer.develop());
-            next_estimate = status.seconds + std::max(0.1, 10 * seconds_since(begin));
+        if (options.error && error_goal.is_due(renderer.passes())) {
+            const RelativeError error = renderer.relative_error();
+            status.error = error.value();
+            accurate = error_goal.look(renderer.passes(), error);
         }
         done = (options.passes && renderer.passes() >= *options.passes) ||
-               (options.seconds && status.seconds >= *options.seconds) ||
-               (options.error && renderer.passes() >= 16 && status.error && *status.error <= *options.error);
+               (options.seconds && status.seconds >= *options.seconds) || accurate;
         if (!options.checkpoint.empty() && status.seconds >= next_checkpoint) {
             save_checkpoint(options.checkpoint, identity, renderer);
             next_checkpoint = seconds_since(render_start) + checkpoint_seconds;
@@ -145,7 +145,7 @@ int render_command(const RenderOptions& given) {
     if (!options.checkpoint.empty()) save_checkpoint(options.checkpoint, identity, renderer);
 
     Image image = renderer.develop();
-    const double error = estimated_relative_error(image);
+    const RelativeError error = renderer.relative_error();
     if (options.aovs) renderer.add_aovs(image, aov_samples);
     image.attributes = {{"scene", options.scene.string()},
                         {"command", options.command_line},

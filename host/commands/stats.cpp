@@ -8,6 +8,8 @@
 namespace etendue {
 namespace {
 
+nlohmann::json finite_or_null(double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(); }
+
 double per_second(uint64_t count, double seconds) { return seconds > 0 ? double(count) / seconds : 0.0; }
 
 // Forward rays carry power. Cameras take none: what is neither absorbed nor lost has left the scene. Russian roulette
@@ -40,7 +42,8 @@ nlohmann::json importance_balance(const RenderCounters& c, double paths) {
 }
 
 nlohmann::json stats(const RenderOptions& options, const Device& device, const Scene& scene,
-                     const Renderer& renderer, double error, double setup_seconds) {
+                     const Renderer& renderer, const RelativeError& error,
+                 double setup_seconds) {
     nlohmann::json kernels = nlohmann::json::array(), timings = nlohmann::json::object();
     double compile_seconds = 0;
     for (const KernelReport& k : scene.kernels) {
@@ -77,7 +80,8 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
         {"seconds", renderer.seconds()},
         {"setup_seconds", setup_seconds},
         {"rays_per_second", per_second(rays, renderer.seconds())},
-        {"estimated_relative_error", std::isfinite(error) ? nlohmann::json(error) : nlohmann::json()},
+        {"estimated_relative_error", finite_or_null(error.value())},
+        {"relative_error_bound", finite_or_null(error.bound())},
         {"algorithm", algorithm_name(choice.algorithm)},
         {"algorithm_reason", choice.reason},
         {"forward_paths_a_pixel", c.forward_paths ? choice.forward_paths : 0.0},
@@ -98,7 +102,8 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
 }  // namespace
 
 void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
-                 const Scene& scene, const Renderer& renderer, double error, double setup_seconds) {
+                 const Scene& scene, const Renderer& renderer, const RelativeError& error,
+                 double setup_seconds) {
     const std::string text =
         stats(options, device, scene, renderer, error, setup_seconds).dump(2) + "\n";
     write_atomically(path, std::as_bytes(std::span(text.data(), text.size())));

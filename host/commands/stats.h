@@ -9,6 +9,7 @@ namespace etendue {
 
 // `error`: the estimated relative error of the image; `setup_seconds`: before the first pass.
 void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
-                 const Scene& scene, const Renderer& renderer, double error, double setup_seconds);
+                 const Scene& scene, const Renderer& renderer, const RelativeError& error,
+                 double setup_seconds);
 
 }  // namespace etendue

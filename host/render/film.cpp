@@ -2,58 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/glm.hpp>
 
 namespace etendue {
-namespace {
 
-// Twin of struct FilmPixel in shaders/lib/film.glsl.
-struct FilmPixel {
-    glm::vec3 sum;
-    float samples;
-    glm::vec3 compensation;
-    float reserved;
-    glm::vec3 squares;
-    float reserved_squares;
-};
-
-}  // namespace
-
-Film::Film(Device& device, uint32_t width, uint32_t height, uint64_t binding_bytes)
+Film::Film(Device& device, uint32_t width, uint32_t height, uint64_t binding_bytes, bool merging)
     : width_(width),
       height_(height),
-      pixels_(device, uint64_t(width) * height * sizeof(FilmPixel), "Film"),
+      merging_(merging),
+      pixels_(device, uint64_t(width) * height * pixel_bytes(), "Film"),
       address_(create_buffer(device, std::vector<uint64_t>{pixels_.address()}, "FilmAddress")),
       by_address_(pixels_.bytes() > binding_bytes) {
     clear();
 }
+
+uint64_t Film::pixel_bytes() const { return sizeof(FilmPixel) + (merging_ ? sizeof(FilmBias) : 0); }
 
 BufferTable Film::buffers() const { return {{"Film", &pixels_}, {"FilmAddress", &address_}}; }
 
 void Film::clear() { pixels_.fill(0); }
 
 std::vector<std::byte> Film::read() const {
-    return pixels_.read_array<std::byte>(uint64_t(width_) * height_ * sizeof(FilmPixel));
+    return pixels_.read_array<std::byte>(uint64_t(width_) * height_ * pixel_bytes());
 }
 
 void Film::write(const std::vector<std::byte>& pixels) { pixels_.write(pixels.data(), pixels.size()); }
 
+FilmSums Film::sums() const {
+    FilmSums sums{width_, height_, {}, {}};
+    const size_t count = size_t(width_) * height_;
+    if (!merging_) {
+        sums.pixels = pixels_.read_array<FilmPixel>(count);
+        return sums;
+    }
+    struct MergingPixel {
+        FilmPixel pixel;
+        FilmBias bias;
+    };
+    static_assert(sizeof(MergingPixel) == sizeof(FilmPixel) + sizeof(FilmBias));
+    for (const MergingPixel& p : pixels_.read_array<MergingPixel>(count)) {
+        sums.pixels.push_back(p.pixel);
+        sums.bias.push_back(p.bias);
+    }
+    return sums;
+}
+
 Image Film::develop() const {
     Image image;
     image.width = width_, image.height = height_;
-    const auto pixels = pixels_.read_array<FilmPixel>(pixel_count(image));
-    std::vector<glm::vec3> means(pixels.size()), errors(pixels.size());
-    for (size_t i = 0; i < pixels.size(); ++i) {
-        const FilmPixel& p = pixels[i];
-        const double n = p.samples;
-        if (n == 0) continue;
-        for (int c = 0; c < 3; ++c) {
-            const double mean = (double(p.sum[c]) + double(p.compensation[c])) / n;
-            means[i][c] = float(mean);
-            const double variance = std::max(0.0, double(p.squares[c]) / n - mean * mean);
-            errors[i][c] = n > 1 ? float(std::sqrt(variance / (n - 1))) : INFINITY;
-        }
-    }
+    const FilmSums film = sums();
+    std::vector<glm::vec3> means;
+    means.reserve(film.pixels.size());
+    for (const FilmPixel& p : film.pixels) means.push_back(mean(p));
+    const std::vector<glm::vec3> errors = estimate_errors(film);
     const auto floats = [](const std::vector<glm::vec3>& v) {
         return std::span<const float>(&v[0].x, 3 * v.size());
     };
@@ -61,6 +61,8 @@ Image Film::develop() const {
     add_channels(image, {"error.R", "error.G", "error.B"}, floats(errors), 3);
     return image;
 }
+
+RelativeError Film::relative_error() const { return estimate_relative_error(sums()); }
 
 double estimated_relative_error(const Image& image) {
     double sum = 0;

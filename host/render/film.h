@@ -1,4 +1,4 @@
-// The film: what the passes of one receiver add up to, pixel by pixel, and the image with its estimated error.
+// The film: what the passes of one receiver add up to, pixel by pixel.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -6,13 +6,15 @@
 #include "host/gpu/buffer.h"
 #include "host/gpu/kernel.h"
 #include "host/image/image.h"
+#include "host/render/film_error.h"
 
 namespace etendue {
 
 class Film {
   public:
-    // Empty. Kernels reach a film of more than `binding_bytes` through its address.
-    Film(Device& device, uint32_t width, uint32_t height, uint64_t binding_bytes);
+    // Empty. Kernels reach a film of more than `binding_bytes` through its address. `merging`: its kernels
+    // are compiled with MERGE_VERTICES, and pixels hold what tells the bias.
+    Film(Device& device, uint32_t width, uint32_t height, uint64_t binding_bytes, bool merging = false);
     Film(const Film&) = delete;
 
     bool by_address() const { return by_address_; }
@@ -21,19 +23,23 @@ class Film {
     void clear();
     // The bytes are those of struct FilmPixel in shaders/lib/film.glsl, for every pixel.
     std::vector<std::byte> read() const;
-    void write(const std::vector<std::byte>& pixels);  // of a film of the same size
+    void write(const std::vector<std::byte>& pixels);  // of a film of the same size and kind
 
-    // Mean radiance as R, G, B, and its standard error as error.R, error.G, error.B.
+    // Mean radiance as R, G, B, and its error (estimate_errors) as error.R, error.G, error.B.
     Image develop() const;
+    RelativeError relative_error() const;  // without developing, which takes longer
 
   private:
+    FilmSums sums() const;
+    uint64_t pixel_bytes() const;
     uint32_t width_, height_;
+    bool merging_;
     Buffer pixels_, address_;
     bool by_address_;
 };
 
-// Root of the estimated relMSE: sqrt(mean(error² / (I² + 0.01 mean(I)²))) over pixels and channels of an
-// image with an error layer. Infinite before the second pass.
+// Root of the relMSE that the error layer of an image amounts to: sqrt(mean(error² / (I² + 0.01 mean(I)²)))
+// over pixels and channels. Infinite where there is no such layer or it is.
 double estimated_relative_error(const Image& image);
 
 }  // namespace etendue

@@ -93,14 +93,9 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       scene_(scene),
       settings_(settings),
       schedule_(settings.schedule),
-      film_(device, settings.width, settings.height,
-            settings.binding_bytes ? settings.binding_bytes : device.description.max_buffer_range),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
       commands_(device) {
     counter_sums_.fill(0);
-    scene.features.film_by_address = film_.by_address();
-    BufferTable film = film_.buffers();
-    film["CounterSums"] = &counter_sums_;
     if (schedule_ == Schedule::automatic) schedule_ = settings_.schedule = choose_schedule(scene);
     choice_ = {settings.algorithm, settings.forward_paths, "asked for", 0};
     if (settings.choice)
@@ -110,6 +105,14 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     settings_.algorithm = choice_.algorithm;
     settings_.forward_paths = choice_.forward_paths;
     const Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
+    // After the pilots of the choice, whose own films set the feature.
+    film_ = std::make_unique<Film>(
+        device, settings.width, settings.height,
+        settings.binding_bytes ? settings.binding_bytes : device.description.max_buffer_range,
+        techniques.merge);
+    scene.features.film_by_address = film_->by_address();
+    BufferTable film = film_->buffers();
+    film["CounterSums"] = &counter_sums_;
     if (techniques.forward) {
         forward_ = std::make_unique<ForwardRays>(device, scene, settings_, techniques, film);
         film.merge(forward_->buffers());
@@ -140,7 +143,7 @@ void Renderer::render_passes(uint32_t count) {
 
 void Renderer::restart(uint32_t seed) {
     settings_.seed = pipeline_->settings.seed = seed;
-    film_.clear();
+    film_->clear();
     counter_sums_.fill(0);
     if (forward_) forward_->restart();
     counters_ = {};
@@ -203,10 +206,10 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
                  std::span(&aovs[0].albedo.x, 7 * pixels), 7);
 }
 
-FilmState Renderer::state() const { return {film_.read(), passes_, counters_}; }
+FilmState Renderer::state() const { return {film_->read(), passes_, counters_}; }
 
 void Renderer::restore(const FilmState& state) {
-    film_.write(state.pixels);
+    film_->write(state.pixels);
     passes_ = state.passes;
     counters_ = state.counters;
     if (forward_) forward_->resume(uint32_t(counters_.forward_paths_a_pass));

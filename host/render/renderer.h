@@ -88,7 +88,8 @@ class Renderer {
     Schedule schedule() const { return schedule_; }
     const AlgorithmChoice& choice() const { return choice_; }
 
-    Image develop() const { return film_.develop(); }
+    Image develop() const { return film_->develop(); }
+    RelativeError relative_error() const { return film_->relative_error(); }
     // Adds albedo.RGB, normal.XYZ and depth.Z of what the pixels see, by `count` primary rays a pixel.
     void add_aovs(Image& image, uint32_t count);
 
@@ -105,7 +106,7 @@ class Renderer {
     AlgorithmChoice choice_;
     RenderSettings settings_;
     Schedule schedule_;
-    Film film_;
+    std::unique_ptr<Film> film_;
     Buffer counter_sums_;
     std::unique_ptr<ForwardRays> forward_;  // null = none
     std::unique_ptr<Pipeline> pipeline_;

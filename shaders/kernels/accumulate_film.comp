@@ -23,6 +23,10 @@ void main() {
 #if HAS_SPLATS
             radiance += take_splats(first_pixel + i);
 #endif
+#if MERGE_VERTICES
+            Spectrum bias = path_states[s * tile_pixels + i].bias;
+            if (is_finite(bias)) add_bias(pixel, bias);
+#endif
             add_sample(pixel, radiance);
         }
         film_at(first_pixel + i) = pixel;

@@ -58,6 +58,9 @@ void main() {
 #if HAS_SPLATS
             path.radiance += take_splats(pixel);
 #endif
+#if MERGE_VERTICES
+            if (is_finite(path.bias)) add_bias(sum, path.bias);
+#endif
             add_sample(sum, path.radiance);
             if (++sample_index == sample_count) {
                 film_at(pixel) = sum;

@@ -48,8 +48,11 @@ uint sobol_second_reversed(uint index) {
     return index;
 }
 
-Sampler start_sampler(uvec2 pixel, uint sample_index, uint seed) {
-    return Sampler(sample_index, hash_3d(uvec3(pixel, seed)).x, 0u);
+// Of a pass of a pixel. Even and odd passes are two sequences, each stratified in itself and independent of the other, so
+// that the difference of their means tells the error of the whole (lib/film.glsl).
+Sampler start_sampler(uvec2 pixel, uint pass, uint seed) {
+    uvec3 hashes = hash_3d(uvec3(pixel, seed));
+    return Sampler(pass >> 1, (pass & 1u) == 0u ? hashes.x : hashes.y, 0u);
 }
 
 // For the path `index` of the `count` forward paths of a pass: all paths of all passes share one sequence.

@@ -51,7 +51,9 @@ TEST_CASE("a render writes an image with its attributes, layers and statistics")
     // camera.
     const size_t middle = 4 * 16 + 8;
     CHECK(channel(image, "R")[0] == doctest::Approx(1));
-    CHECK(channel(image, "R")[middle] == doctest::Approx(0.5).epsilon(0.01));
+    // Of 8 samples of a soft environment: within a few errors, as the layer states them.
+    CHECK(std::fabs(channel(image, "R")[middle] - 0.5) < 4 * channel(image, "error.R")[middle]);
+    CHECK(channel(image, "error.R")[middle] < 0.1);
     CHECK(channel(image, "albedo.G")[middle] == doctest::Approx(0.5).epsilon(0.01));
     CHECK(channel(image, "normal.Z")[middle] > 0.8);
     CHECK(channel(image, "depth.Z")[middle] == doctest::Approx(4).epsilon(0.1));

@@ -14,20 +14,21 @@ struct Pair {
     float x, y;
 };
 
-// pairs[(pixel * samples + sample) * dimensions + dimension]; pixels lie in a row of 256 each.
+// pairs[(pixel * samples + sample) * dimensions + dimension]; pixels lie in a row of 256 each. Samples are
+// those of the even passes, or of the odd ones.
 std::vector<Pair> draw_pairs(uint32_t pixels, uint32_t samples, uint32_t dimensions,
-                             uint32_t first_sample = 0, uint32_t seed = 0) {
+                             uint32_t first_sample = 0, uint32_t seed = 0, uint32_t odd = 0) {
     Buffer out(test_device(), uint64_t(pixels) * samples * dimensions * sizeof(Pair), "pairs");
     const Kernel kernel = make_test_kernel("draw_pairs", R"(
         #include "lib/sampler.glsl"
         layout(local_size_x = 64) in;
         layout(scalar, set = 0) buffer Pairs { vec2 pairs[]; };
-        layout(push_constant) uniform Push { uint pixel_count, sample_count, dimension_count, first_sample, seed; };
+        layout(push_constant) uniform Push { uint pixel_count, sample_count, dimension_count, first_sample, seed, odd; };
         void main() {
             uint i = gl_GlobalInvocationID.x;
             if (i >= pixel_count * sample_count) return;
             uint pixel = i / sample_count;
-            Sampler s = start_sampler(uvec2(pixel & 255u, pixel >> 8), first_sample + i % sample_count, seed);
+            Sampler s = start_sampler(uvec2(pixel & 255u, pixel >> 8), 2u * (first_sample + i % sample_count) + odd, seed);
             for (uint d = 0u; d < dimension_count; d++) pairs[i * dimension_count + d] = sample_2d(s);
         }
     )",
@@ -38,7 +39,8 @@ std::vector<Pair> draw_pairs(uint32_t pixels, uint32_t samples, uint32_t dimensi
                    {"sample_count", samples},
                    {"dimension_count", dimensions},
                    {"first_sample", first_sample},
-                   {"seed", seed}});
+                   {"seed", seed},
+                   {"odd", odd}});
     list.run();
     return out.read_array<Pair>(uint64_t(pixels) * samples * dimensions);
 }
@@ -75,15 +77,17 @@ bool is_net(const Pair* points, size_t stride, uint32_t log_count) {
 
 }  // namespace
 
-TEST_CASE("sampler: every aligned power of two of a pair's samples is a (0,2)-net") {
+TEST_CASE("sampler: every aligned power of two of a pair's even or odd passes is a (0,2)-net") {
     const uint32_t pixels = 16, samples = 1024, dimensions = 4;
-    const auto pairs = draw_pairs(pixels, samples, dimensions, 0, 7);
-    for (uint32_t pixel = 0; pixel < pixels; ++pixel)
-        for (uint32_t d = 0; d < dimensions; ++d)
-            for (uint32_t log_count = 0; log_count <= 10; ++log_count)
-                for (uint32_t first = 0; first < samples; first += 1u << log_count)
-                    REQUIRE(
-                        is_net(&pairs[(pixel * samples + first) * dimensions + d], dimensions, log_count));
+    for (uint32_t odd : {0u, 1u}) {
+        const auto pairs = draw_pairs(pixels, samples, dimensions, 0, 7, odd);
+        for (uint32_t pixel = 0; pixel < pixels; ++pixel)
+            for (uint32_t d = 0; d < dimensions; ++d)
+                for (uint32_t log_count = 0; log_count <= 10; ++log_count)
+                    for (uint32_t first = 0; first < samples; first += 1u << log_count)
+                        REQUIRE(is_net(&pairs[(pixel * samples + first) * dimensions + d], dimensions,
+                                       log_count));
+    }
 }
 
 TEST_CASE("sampler: late samples are stratified like early ones") {
@@ -127,7 +131,9 @@ TEST_CASE("sampler: over pixels, the numbers of a sample are uniform and indepen
     }
 }
 
-TEST_CASE("sampler: over a pixel's samples, pairs are independent of one another and of the next pixel's") {
+TEST_CASE(
+    "sampler: over a pixel's samples, pairs are independent of one another, of the next pixel's and of the "
+    "other half's") {
     // A block of 16 samples puts one point in each row and column of a 16 x 16 table. With independent
     // scrambles each cell's count over the 64 blocks has variance 64 (1/16) (15/16), so Pearson's statistic
     // has the mean 256 * 3.75 / 4 = 240. (Its variance is larger than chi-squared's: the cells that a block
@@ -137,21 +143,23 @@ TEST_CASE("sampler: over a pixel's samples, pairs are independent of one another
     const auto at = [&](uint32_t pixel, uint32_t sample, uint32_t d) {
         return pairs[(pixel * samples + sample) * dimensions + d];
     };
-    Moments xx_moments, xy_moments, pixel_moments;
+    const auto odd_pairs = draw_pairs(pixels, samples, dimensions, 0, 3, 1);
+    Moments xx_moments, xy_moments, pixel_moments, half_moments;
     for (uint32_t pixel = 0; pixel < pixels; ++pixel)
         for (uint32_t d = 0; d + 1 < dimensions; ++d) {
-            Grid xx{16}, xy{16}, pixel_to_pixel{16};
+            Grid xx{16}, xy{16}, pixel_to_pixel{16}, half_to_half{16};
             for (uint32_t i = 0; i < samples; ++i) {
                 xx.add(at(pixel, i, d).x, at(pixel, i, d + 1).x);
                 xy.add(at(pixel, i, d).x, at(pixel, i, d + 1).y);
                 pixel_to_pixel.add(at(pixel, i, d).x, at((pixel + 1) % pixels, i, d).x);
+                half_to_half.add(at(pixel, i, d).x, odd_pairs[(pixel * samples + i) * dimensions + d].x);
             }
             xx_moments.add(xx.statistic()), xy_moments.add(xy.statistic()),
-                pixel_moments.add(pixel_to_pixel.statistic());
+                pixel_moments.add(pixel_to_pixel.statistic()), half_moments.add(half_to_half.statistic());
         }
-    for (const Moments& m : {xx_moments, xy_moments, pixel_moments}) {
+    for (const Moments& m : {xx_moments, xy_moments, pixel_moments, half_moments}) {
         CAPTURE(m.mean);
-        CHECK(z_test(m.mean, 240.0, m.standard_error()) > sidak_level(false_alarm, 3));
+        CHECK(z_test(m.mean, 240.0, m.standard_error()) > sidak_level(false_alarm, 4));
     }
 }
 

@@ -1,0 +1,60 @@
+// The error of a film, told from the film alone.
+//
+// A pixel's samples are stratified over its passes, so the spread of the samples overstates the error of
+// their mean. The even and the odd passes are independent of each other, though: the squared difference of
+// their means tells the variance of the mean without assuming anything, if with one degree of freedom only.
+// So the spread of a pixel's samples says how the error is distributed over the image, and the differences of
+// the halves, pooled over neighbouring pixels, say how large it is.
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+namespace etendue {
+
+// Twin of struct FilmPixel in shaders/lib/film.glsl without merging, ...
+struct FilmPixel {
+    glm::vec3 sum;
+    uint32_t samples;
+    glm::vec3 compensation, difference, squares;
+    float squares_difference;
+};
+// ... and of what merging adds to it.
+struct FilmBias {
+    glm::vec3 sum, difference;
+};
+
+struct FilmSums {
+    uint32_t width = 0, height = 0;
+    std::vector<FilmPixel> pixels;
+    std::vector<FilmBias> bias;  // empty without merging
+};
+
+glm::dvec3 mean(const FilmPixel& pixel);  // 0 before the first pass
+
+// Root of the expected square of each pixel's difference from the truth, by channel: standard error and, with
+// merging, bias. Infinite before the second pass.
+std::vector<glm::vec3> estimate_errors(const FilmSums& film);
+
+// Of the relMSE: mean((I - truth)² / (truth² + 0.01 mean(truth)²)) over pixels and channels.
+struct RelativeError {
+    double mean_square = 0;  // estimated
+    double deviation = 0;    // standard deviation of (true relMSE - mean_square)
+    double value() const;    // root of the estimate
+    double bound() const;    // what the root of the true relMSE does not exceed, with 95 % confidence
+};
+RelativeError estimate_relative_error(const FilmSums& film);  // infinite before the second pass
+
+// When to stop for an error: once its bound lies below. Stopping at the first of many looks that happens to
+// please would stop too early; so a look is taken only where the film has grown by an eighth since the last.
+struct ErrorGoal {
+    double goal;
+    uint64_t next_look = 16;  // passes
+    bool is_due(uint64_t passes) const { return passes >= next_look; }
+    bool look(uint64_t passes, const RelativeError& error) {
+        next_look = passes + passes / 8 + 1;
+        return error.bound() <= goal;
+    }
+};
+
+}  // namespace etendue
