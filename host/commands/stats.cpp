@@ -12,8 +12,8 @@ nlohmann::json finite_or_null(double x) { return std::isfinite(x) ? nlohmann::js
 
 double per_second(uint64_t count, double seconds) { return seconds > 0 ? double(count) / seconds : 0.0; }
 
-// Forward rays carry power. Cameras take none: what is neither absorbed nor lost has left the scene. Russian roulette
-// takes from some paths what it gives to others; what is left of that is noise.
+// Forward rays carry power. Cameras take none: what is neither absorbed nor lost has left the scene. Russian
+// roulette takes from some paths what it gives to others; what is left of that is noise.
 nlohmann::json flux_balance(const RenderCounters& c, double power) {
     const double lumens = power / double(c.forward_paths);  // a unit of the counters
     const double escaped = c.forward_escaped * lumens;
@@ -29,21 +29,19 @@ nlohmann::json flux_balance(const RenderCounters& c, double power) {
               {"non_finite", c.forward_non_finite}}}};
 }
 
-// Backward rays carry importance: 1 a path. What leaves the scene is received by its surroundings; what is neither
-// received nor lost was absorbed.
+// Backward rays carry importance: 1 a path. What leaves the scene is received by its surroundings; what is
+// neither received nor lost was absorbed.
 nlohmann::json importance_balance(const RenderCounters& c, double paths) {
-    return {
-        {"unit", "share of the importance that the receiver sent out"},
-        {"emitted", 1.0},
-        {"received", c.escaped / paths},
-        {"absorbed", 1.0 - (c.escaped + c.depth_limit_lost) / paths},
-        {"lost",
-         {{"depth_limit", c.depth_limit_lost / paths}, {"non_finite", double(c.non_finite) / paths}}}};
+    return {{"unit", "share of the importance that the receiver sent out"},
+            {"emitted", 1.0},
+            {"received", c.escaped / paths},
+            {"absorbed", 1.0 - (c.escaped + c.depth_limit_lost) / paths},
+            {"lost",
+             {{"depth_limit", c.depth_limit_lost / paths}, {"non_finite", double(c.non_finite) / paths}}}};
 }
 
 nlohmann::json stats(const RenderOptions& options, const Device& device, const Scene& scene,
-                     const Renderer& renderer, const RelativeError& error,
-                 double setup_seconds) {
+                     const Renderer& renderer, const RelativeError& error, double setup_seconds) {
     nlohmann::json kernels = nlohmann::json::array(), timings = nlohmann::json::object();
     double compile_seconds = 0;
     for (const KernelReport& k : scene.kernels) {
@@ -61,40 +59,39 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
                          {"rays_per_second", per_second(rays, t.seconds)}};
     const AlgorithmChoice& choice = renderer.choice();
     const double paths = double(renderer.passes()) * options.size->width * options.size->height;
-    nlohmann::json json = {
-        {"scene", options.scene.string()},
-        {"command", options.command_line},
-        {"version", ETENDUE_VERSION},
-        {"device", device.description.name},
-        {"driver", device.description.driver},
-        {"seed", options.seed},
-        {"width", options.size->width},
-        {"height", options.size->height},
-        {"passes", renderer.passes()},
-        {"backward_rays", c.rays},
-        {"shadow_rays", c.shadow_rays},
-        {"forward_paths", c.forward_paths},
-        {"forward_rays", c.forward_rays},
-        {"forward_shadow_rays", c.forward_shadow_rays},
-        {"split_passes", c.split_passes},
-        {"seconds", renderer.seconds()},
-        {"setup_seconds", setup_seconds},
-        {"rays_per_second", per_second(rays, renderer.seconds())},
-        {"estimated_relative_error", finite_or_null(error.value())},
-        {"relative_error_bound", finite_or_null(error.bound())},
-        {"algorithm", algorithm_name(choice.algorithm)},
-        {"algorithm_reason", choice.reason},
-        {"forward_paths_a_pixel", c.forward_paths ? choice.forward_paths : 0.0},
-        {"pilot_seconds", choice.pilot_seconds},
-        {"schedule", schedule_name(renderer.schedule())},
-        {"kernels", timings},
-        {"compiled_kernels", kernels},
-        {"compile_seconds", compile_seconds},
-        {"driver_compile_seconds", renderer.warm_up_seconds()},
-        {"peak_device_memory_bytes", device.peak_bytes_allocated},
-        {"light_power_lm", scene.power},
-        {"importance_balance", importance_balance(c, paths)},
-        {"non_finite_samples", c.non_finite + c.forward_non_finite}};
+    nlohmann::json json = {{"scene", options.scene.string()},
+                           {"command", options.command_line},
+                           {"version", ETENDUE_VERSION},
+                           {"device", device.description.name},
+                           {"driver", device.description.driver},
+                           {"seed", options.seed},
+                           {"width", options.size->width},
+                           {"height", options.size->height},
+                           {"passes", renderer.passes()},
+                           {"backward_rays", c.rays},
+                           {"shadow_rays", c.shadow_rays},
+                           {"forward_paths", c.forward_paths},
+                           {"forward_rays", c.forward_rays},
+                           {"forward_shadow_rays", c.forward_shadow_rays},
+                           {"split_passes", c.split_passes},
+                           {"seconds", renderer.seconds()},
+                           {"setup_seconds", setup_seconds},
+                           {"rays_per_second", per_second(rays, renderer.seconds())},
+                           {"estimated_relative_error", finite_or_null(error.value())},
+                           {"relative_error_bound", finite_or_null(error.bound())},
+                           {"algorithm", algorithm_name(choice.algorithm)},
+                           {"algorithm_reason", choice.reason},
+                           {"forward_paths_a_pixel", c.forward_paths ? choice.forward_paths : 0.0},
+                           {"pilot_seconds", choice.pilot_seconds},
+                           {"schedule", schedule_name(renderer.schedule())},
+                           {"kernels", timings},
+                           {"compiled_kernels", kernels},
+                           {"compile_seconds", compile_seconds},
+                           {"driver_compile_seconds", renderer.warm_up_seconds()},
+                           {"peak_device_memory_bytes", device.peak_bytes_allocated},
+                           {"light_power_lm", scene.power},
+                           {"importance_balance", importance_balance(c, paths)},
+                           {"non_finite_samples", c.non_finite + c.forward_non_finite}};
     json["power_balance"] = c.forward_paths ? flux_balance(c, scene.power) : json["importance_balance"];
     return json;
 }
@@ -104,8 +101,7 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
 void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
                  const Scene& scene, const Renderer& renderer, const RelativeError& error,
                  double setup_seconds) {
-    const std::string text =
-        stats(options, device, scene, renderer, error, setup_seconds).dump(2) + "\n";
+    const std::string text = stats(options, device, scene, renderer, error, setup_seconds).dump(2) + "\n";
     write_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 

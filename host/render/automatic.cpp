@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t pilot_pixels = 32;  // along the longer side
 constexpr uint32_t pilot_passes = 32;
-constexpr double false_alarm = 1e-3;   // of calling images different that are not
+constexpr double false_alarm = 1e-3;                   // of calling images different that are not
 constexpr double most_paths = 16, least_paths = 0.25;  // forward paths a pixel
 
 struct Pilot {
@@ -86,8 +86,7 @@ AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSetti
             best_paths(one, run_pilot(device, scene, settings, Algorithm::bidirectional, 4));
         choice.reason = agreed ? "in a pilot " + measured : "in a pilot backward rays alone missed light";
     }
-    choice.pilot_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    choice.pilot_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return choice;
 }
 

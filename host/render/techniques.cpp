@@ -42,8 +42,8 @@ std::vector<uint32_t> ask(Device& device, Scene& scene, const std::string& file,
 
 bool find_narrow_materials(Device& device, Scene& scene) {
     if (scene.materials == 0) return false;
-    const auto narrow = ask(device, scene, "kernels/measure_lobes.comp", "MaterialLobes",
-                            uint32_t(scene.materials));
+    const auto narrow =
+        ask(device, scene, "kernels/measure_lobes.comp", "MaterialLobes", uint32_t(scene.materials));
     Buffer& buffer = scene.buffers.at("Materials");
     auto materials = buffer.read_array<MaterialRecord>(scene.materials);
     for (size_t i = 0; i < narrow.size(); ++i)
@@ -54,8 +54,8 @@ bool find_narrow_materials(Device& device, Scene& scene) {
 
 bool has_compact_light(Device& device, Scene& scene) {
     if (scene.lights == 0) return false;
-    const auto compact = ask(device, scene, "kernels/measure_compactness.comp", "LightCompactness",
-                             uint32_t(scene.lights));
+    const auto compact =
+        ask(device, scene, "kernels/measure_compactness.comp", "LightCompactness", uint32_t(scene.lights));
     return std::find(compact.begin(), compact.end(), 1u) != compact.end();
 }
 

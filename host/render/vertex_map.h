@@ -14,7 +14,8 @@ class VertexMap {
     using KernelMaker = std::function<Kernel(const std::string& file, const BufferTable& buffers,
                                              const std::string& defines)>;
 
-    static constexpr uint64_t bytes_a_vertex = 64 + 12 + 24 + 16 + 8;  // with its place in the grid and two buckets at most
+    static constexpr uint64_t bytes_a_vertex =
+        64 + 12 + 24 + 16 + 8;  // with its place in the grid and two buckets at most
 
     // Room for `capacity` light vertices, 1 to 2^28 - 2, and a bucket for each, up to 2^22. Vertices of more
     // than `binding_bytes` are read by address; 0 = what the device can bind.

@@ -75,7 +75,8 @@ ScatteringPoint scattering_point(SurfacePoint p, vec3 direction, uint medium) {
 
 // Forward rays must scatter into every direction as they would be seen from there: about the shading normal into
 // directions where both normals agree, about the geometric one into the others. Which of the two is drawn; this is the
-// probability of the flat one for light from a direction (towards it). Light itself must arrive where normals agree, or only the flat one is left.
+// probability of the flat one for light from a direction (towards it). Light that arrives where the normals do not agree has only
+// the flat one.
 float flat_probability(ScatteringPoint s, vec3 light_direction) {
     return is_consistent(s, light_direction) ? min(distance(s.shading_normal, s.normal) * INV_PI, 0.5) : 1.0;
 }

@@ -35,7 +35,8 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     float towards_there = here.pdf * cos_there / distance_squared;
     float towards_here = away.pdf * frame * cos_here / distance_squared;
     float reverse = here.pdf_reverse * frame_probability(s, direction, -path.direction);
-    bool merges_there = (y.previous & LIGHT_VERTEX_MERGES) != 0u && (is_narrow(s.material) || is_short_edge(y.position, p.position));
+    bool merges_there = (y.previous & LIGHT_VERTEX_MERGES) != 0u &&
+                        (is_narrow(s.material) || is_short_edge(y.position, p.position));
     float merging_there = merges_there ? merge_density(y.position) : 0.0;
     float merging_here = is_narrow(there.material) ? mis.merging : 0.0;
     float connects_there = (y.previous & VERTEX_STARTS) != 0u ? 1.0 : CONNECTION_SHARE;
@@ -43,8 +44,8 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     float by_forward = towards_here * (merging_here + connects(path) * mis.vcm + reverse * mis.vc);
     float weight = CONNECTION_SHARE / (CONNECTION_SHARE + by_backward + by_forward);
 
+    float flux = forward_pass.path_flux * float(forward_pass.count) * float(end.y);  // one path and vertex stand for all
     Spectrum contribution = path.throughput * here.value * y.throughput * away.value *
-                            (adjoint_correction(there, light_direction, -direction) * weight * float(end.y) * forward_pass.path_flux *
-                             float(forward_pass.count) / distance_squared);
+                            (adjoint_correction(there, light_direction, -direction) * weight * flux / distance_squared);
     return shadow_ray(p, s, direction, distance, contribution);
 }

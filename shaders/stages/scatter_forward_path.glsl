@@ -6,7 +6,8 @@
 #endif
 
 // The ray that brings light from the point to the receiver.
-ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, ReceiverSample r, SurfacePair pair, VertexMis mis) {
+ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, ReceiverSample r, SurfacePair pair,
+                           VertexMis mis) {
     float frame = frame_probability(s, -path.direction, r.direction);
     if (is_black(pair.value) || !is_seen_from(s, r.direction) || !(frame > 0.0)) return no_shadow_ray();
     float importance = r.density * pixel_count() / r.pdf;  // of one pixel

@@ -40,7 +40,8 @@ TEST_CASE("automatic: matte surfaces need no forward rays") {
 TEST_CASE("automatic: light from everywhere needs no forward rays") {
     SceneBuilder scene;
     scene.medium("glass", {{"class", "homogeneous"}, {"ior", 1.5}});
-    scene.sphere(0.5, scene.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}), at(0, 0, 0));
+    scene.sphere(0.5, scene.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}),
+                 at(0, 0, 0));
     scene.environment(1.0);
     scene.perspective(0.8, at(0, 0, 3));
     const AlgorithmChoice choice = choice_for(scene.import());
