@@ -166,7 +166,7 @@ TEST_CASE("algorithms agree: a directional light and a constant environment") {
     check_against_backward(row.scene, c);
 }
 
-TEST_CASE("algorithms agree: an image environment") {
+TEST_CASE("algorithms agree: an image environment" * doctest::test_suite("long")) {
     const TemporaryFolder folder;
     Image sky;
     sky.width = 16, sky.height = 8;
@@ -196,7 +196,7 @@ TEST_CASE("algorithms agree: smooth glass, a mirror and what is seen in them") {
     check_against_backward(s);
 }
 
-TEST_CASE("algorithms agree: rough glass that absorbs inside") {
+TEST_CASE("algorithms agree: rough glass that absorbs inside" * doctest::test_suite("long")) {
     SceneBuilder s;
     add_room(s);
     add_lamp(s, 1.5);
@@ -233,7 +233,8 @@ TEST_CASE("algorithms agree: panes and sheets of alpha between light, object and
     check_against_backward(s);
 }
 
-TEST_CASE("algorithms agree: principled materials with textures and normal maps") {
+TEST_CASE("algorithms agree: principled materials with textures and normal maps" *
+          doctest::test_suite("long")) {
     const TemporaryFolder folder;
     SceneBuilder s;
     add_room(s);
@@ -281,7 +282,7 @@ TEST_CASE("algorithms agree: coarse meshes with smooth normals") {
     check_against_backward(s);
 }
 
-TEST_CASE("algorithms agree: coarse mirrors and glass with smooth normals") {
+TEST_CASE("algorithms agree: coarse mirrors and glass with smooth normals" * doctest::test_suite("long")) {
     SceneBuilder s;
     add_room(s);
     add_lamp(s, 2);
@@ -292,7 +293,8 @@ TEST_CASE("algorithms agree: coarse mirrors and glass with smooth normals") {
     check_against_backward(s);
 }
 
-TEST_CASE("algorithms agree: shapes and copies of a mesh under scales that differ by axis") {
+TEST_CASE("algorithms agree: shapes and copies of a mesh under scales that differ by axis" *
+          doctest::test_suite("long")) {
     SceneBuilder s;
     add_room(s);
     const int lamp = s.black_emitter({3, 3.3, 3.6});
