@@ -98,7 +98,8 @@ TEST_CASE("forward flux: nothing is absorbed where no surface absorbs") {
     CHECK(std::fabs(b.roulette) < 0.005);
 }
 
-TEST_CASE("full vertex buffers make passes of fewer forward paths, and the same image") {
+TEST_CASE("full vertex buffers make passes of fewer forward paths, and the same image" *
+          doctest::test_suite("long")) {
     Scene scene = compile_test_scene(varied_scene().import());
     RenderPlan plan;
     plan.width = 32, plan.height = 32, plan.passes = 128, plan.seeds = 8;
