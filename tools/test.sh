@@ -7,15 +7,16 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/build.sh release
+run_tests() { ctest --test-dir build/release --output-on-failure --parallel "$(nproc)" "$@"; }
 case "${1:-}" in
-    "") ctest --test-dir build/release --output-on-failure -LE long ;;
-    long) ctest --test-dir build/release --output-on-failure ;;
+    "") run_tests -LE long ;;
+    long) run_tests ;;
     drivers)
         tools/setup.sh --drivers
         for driver in mesa22 swiftshader; do
             echo "== $driver"
             VK_DRIVER_FILES=$PWD/build/drivers/$driver/icd.json VK_ICD_FILENAMES=$PWD/build/drivers/$driver/icd.json \
-                ctest --test-dir build/release --output-on-failure -L device -LE long
+                run_tests -L device -LE long
         done ;;
     *) echo "usage: tools/test.sh [long|drivers]" >&2; exit 2 ;;
 esac

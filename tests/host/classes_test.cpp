@@ -7,6 +7,7 @@
 
 #include "host/error.h"
 #include "host/scene/classes.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 
@@ -63,8 +64,7 @@ TEST_CASE("a parameter's type, offset, default, range and unit come from its cla
 }
 
 TEST_CASE("an element class from outside compiles with its interface's contract and dispatch") {
-    const auto folder = std::filesystem::temp_directory_path() / "etendue_element_class";
-    std::filesystem::create_directories(folder);
+    const TemporaryFolder folder;
     std::ofstream(folder / "mirror_box.glsl")
         << "// Sends every ray back.\n"
            "struct MirrorBox {\n    float size;  //: 1 in (0, inf) m. Edge of the box.\n};\n"
@@ -81,5 +81,4 @@ TEST_CASE("an element class from outside compiles with its interface's contract 
            "bool half_box_enter(HalfBox r, inout ElementRay ray) { return true; }\n";
     registry.add_class_file(Interface::element, folder / "half_box.glsl");
     CHECK_THROWS_AS(registry.find(Interface::element, "half_box"), Error);  // half_box_leave is missing
-    std::filesystem::remove_all(folder);
 }

@@ -7,22 +7,12 @@
 #include "host/image/exr.h"
 #include "host/scene/image_file.h"
 #include "tests/host/gltf_scene_builder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 using nlohmann::json;
 
 namespace {
-
-// A folder of its own for each test, gone at its end.
-struct TemporaryFolder {
-    std::filesystem::path path;
-    explicit TemporaryFolder(const std::string& name)
-        : path(std::filesystem::temp_directory_path() / ("etendue_" + name)) {
-        std::filesystem::remove_all(path);
-        std::filesystem::create_directories(path);
-    }
-    ~TemporaryFolder() { std::filesystem::remove_all(path); }
-};
 
 template <class Bytes>
 void write_file(const std::filesystem::path& path, const Bytes& bytes) {
@@ -63,7 +53,7 @@ size_t triangle_count(const SceneDescription& scene) {
 
 TEST_CASE(
     "a scene with a buffer and images in other files is read, names with %-escapes and longer buffers too") {
-    TemporaryFolder folder("gltf_files");
+    const TemporaryFolder folder;
     GltfBuilder b;
     b.triangle()["material"] = 0;
     b.document["buffers"] = json::array({{{"byteLength", b.binary.size()}, {"uri", "my%20data.bin"}}});
@@ -88,7 +78,7 @@ TEST_CASE("Radiance rows stored by component, with runs, are read") {
     std::string text = "#?RADIANCE\nEXPOSURE=1\n\n-Y 1 +X 8\n";
     for (int byte : {2, 2, 0, 8, 128 + 8, 128, 3, 64, 128, 0, 128 + 5, 32, 128 + 8, 0, 128 + 8, 130})
         text += char(byte);
-    TemporaryFolder folder("gltf_rle");
+    const TemporaryFolder folder;
     write_file(folder.path / "image.hdr", text);
     ImageDescription image = read_image_file(folder.path / "image.hdr");
     REQUIRE(image.rgba32f.size() == 32);
@@ -101,7 +91,7 @@ TEST_CASE("Radiance rows stored by component, with runs, are read") {
 }
 
 TEST_CASE("an OpenEXR image is read as linear floats") {
-    TemporaryFolder folder("gltf_exr");
+    const TemporaryFolder folder;
     Image image;
     image.width = 2, image.height = 1;
     image.channels = {"R", "G", "B"};
@@ -115,7 +105,7 @@ TEST_CASE("an OpenEXR image is read as linear floats") {
 }
 
 TEST_CASE("image files that are missing, damaged, or not finite are refused") {
-    TemporaryFolder folder("gltf_bad_images");
+    const TemporaryFolder folder;
     std::filesystem::path path = folder.path / "image";
     CHECK(image_error(path).find(path.string()) == 0);
     write_file(path, std::string("no image"));

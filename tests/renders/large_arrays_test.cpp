@@ -7,6 +7,7 @@
 #include "host/render/renderer.h"
 #include "host/scene/gltf.h"
 #include "tests/support/device_fixture.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 
@@ -57,8 +58,7 @@ TEST_CASE("arrays beyond the size of a binding are read by address, with the sam
     placement[3] = glm::dvec4(0, 0, 4, 1);
     scene.receivers.push_back({"camera", {"perspective", {{"yfov", 0.6}}, ""}, placement});
     // The environment image comes from a file.
-    const auto folder = std::filesystem::temp_directory_path() / "etendue_large_arrays";
-    std::filesystem::create_directories(folder);
+    const TemporaryFolder folder;
     const char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 4\n";
     std::string file(hdr, sizeof hdr - 1);
     for (int i = 0; i < 8; ++i) file += {char(100 + 10 * i), char(90), char(200 - 10 * i), char(129)};
@@ -66,10 +66,9 @@ TEST_CASE("arrays beyond the size of a binding are read by address, with the sam
     REQUIRE(out);
     std::fwrite(file.data(), 1, file.size(), out);
     std::fclose(out);
-    scene.folder = folder;
+    scene.folder = folder.path;
     scene.environment =
         ObjectDescription{"image", {{"file", "sky.hdr"}}, "/extensions/ETD_optics/environment"};
 
     CHECK(film_of(scene, 0, false) == film_of(scene, 16, true));
-    std::filesystem::remove_all(folder);
 }
