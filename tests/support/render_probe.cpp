@@ -74,7 +74,11 @@ int SceneBuilder::black_emitter(json radiance) {
 
 void SceneBuilder::shape(json geometry, int material, const Place& place) {
     geometry["material"] = material;
-    node({{"extensions", {{"ETD_optics", {{"geometry", std::move(geometry)}}}}}}, place);
+    placed("geometry", std::move(geometry), place);
+}
+
+void SceneBuilder::placed(const std::string& kind, json object, const Place& place) {
+    node({{"extensions", {{"ETD_optics", {{kind, std::move(object)}}}}}}, place);
 }
 
 void SceneBuilder::sphere(double radius, int material, const Place& place) {
@@ -121,6 +125,10 @@ void SceneBuilder::mesh(const std::vector<glm::vec3>& positions, const std::vect
         attributes["TEXCOORD_0"] = accessor(uvs.data(), uvs.size() * 8, 5126, uvs.size(), "VEC2");
     document["meshes"].push_back(
         {{"primitives", {{{"attributes", attributes}, {"indices", index}, {"material", material}}}}});
+    mesh_copy(place);
+}
+
+void SceneBuilder::mesh_copy(const Place& place) {
     node({{"mesh", document["meshes"].size() - 1}}, place);
 }
 

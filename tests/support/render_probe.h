@@ -37,9 +37,12 @@ class SceneBuilder {
     void sphere(double radius, int material, const Place& place);
     void rectangle(double width, double height, int material, const Place& place);
     void light(nlohmann::json punctual, const Place& place);  // of KHR_lights_punctual
+    // `kind`: light, receiver, …: a member of the node's ETD_optics.
+    void placed(const std::string& kind, nlohmann::json object, const Place& place);
     void mesh(const std::vector<glm::vec3>& positions, const std::vector<uint32_t>& indices, int material,
               const Place& place, const std::vector<glm::vec3>& normals = {},
               const std::vector<glm::vec2>& uvs = {});
+    void mesh_copy(const Place& place);  // of the mesh that was added last
     void orthographic(double ymag, const Place& place, const std::string& name = "camera");
     void perspective(double yfov, const Place& place, const std::string& name = "camera");
     void environment(nlohmann::json radiance);
