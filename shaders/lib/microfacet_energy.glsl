@@ -19,6 +19,24 @@ float ggx_average_loss(float alpha) {
     return a * a * (0.243 - 1.02644 * l + a * (-1.90449 - 1.65972 * l + a * (3.0585 - a * 0.77449)));
 }
 
+// Directions for such a lobe. The losses of all these surfaces fall about as 1 / (mu² + 4 alpha²), so a cosine
+// would miss the grazing directions where narrow lobes lose most: light that goes round inside a sphere meets
+// them again and again. Density mu / (pi (mu² + w²) ln(1 + 1/w²)) with w = 2 alpha, 1/sr.
+float ggx_multiscatter_pdf(float mu, float alpha) {
+    float w2 = 4.0 * alpha * alpha;
+    return mu * INV_PI / ((mu * mu + w2) * log(1.0 + 1.0 / w2));
+}
+
+vec3 ggx_sample_multiscatter(vec2 u, float alpha) {
+    float w2 = 4.0 * alpha * alpha;
+    float mu2 = clamp(w2 * (exp(u.x * log(1.0 + 1.0 / w2)) - 1.0), 0.0, 1.0);
+    float phi = 2.0 * PI * u.y;
+    return vec3(sqrt(1.0 - mu2) * vec2(cos(phi), sin(phi)), sqrt(mu2));
+}
+
+// Part of the samples that follow it: what is lost, but never so much that the others weigh more than twice.
+float ggx_multiscatter_part(float loss) { return clamp(loss, 0.0, 0.5); }
+
 // The same for dielectric facets that reflect and refract: the part of the light from mu that neither leaves
 // above nor below. Small networks of one hidden layer, y = z / sqrt(1 + z²), trained for indices 1.2 to 2.4
 // (beyond, the nearest of these is taken): at index 1.5 the sum of both lobes is 1 within 0.003, for alpha

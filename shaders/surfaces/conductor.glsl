@@ -3,7 +3,7 @@
 // `reflectance`, where given, is the reflected part at every angle; else Fresnel's equations hold for a metal
 // of complex index eta - i k in the medium on the ray's side. The defaults of eta and k make a perfect
 // mirror. One reflection at a facet is modelled, so rough surfaces lose what is reflected more often;
-// `multiscatter` gives it back as a diffuse lobe after Kulla & Conty 2017, reciprocal and lossless for
+// `multiscatter` gives it back as a broad lobe after Kulla & Conty 2017, reciprocal and lossless for
 // reflectance 1.
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
@@ -39,7 +39,7 @@ Spectrum conductor_multiscatter_tint(Conductor r, SurfaceContext c, float side) 
 
 // Part of the samples that follow the multiple-scattering lobe.
 float conductor_multiscatter_part(Conductor r, float mu_o) {
-    return r.multiscatter ? clamp(ggx_loss(mu_o, r.alpha), 0.0, 0.9) : 0.0;
+    return r.multiscatter ? ggx_multiscatter_part(ggx_loss(mu_o, r.alpha)) : 0.0;
 }
 
 Spectrum conductor_eval(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
@@ -59,7 +59,8 @@ float conductor_pdf(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
     wo.z *= side, wi.z *= side;
     if (wi.z <= 0.0 || r.alpha < SMOOTH_ALPHA) return 0.0;
     float multiscatter = conductor_multiscatter_part(r, wo.z);
-    return mix(ggx_reflection_pdf(wo, reflection_normal(wo, wi), r.alpha), INV_PI * wi.z, multiscatter);
+    float single = ggx_reflection_pdf(wo, reflection_normal(wo, wi), r.alpha);
+    return mix(single, ggx_multiscatter_pdf(wi.z, r.alpha), multiscatter);
 }
 
 BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {
@@ -70,7 +71,7 @@ BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {
                           EVENT_REFLECT | EVENT_DELTA);
     vec3 h = ggx_sample_visible(wo, r.alpha, u.xy);
     vec3 wi = 2.0 * dot(wo, h) * h - wo;
-    if (u.z < conductor_multiscatter_part(r, wo.z)) wi = warp_cosine_hemisphere(u.xy);
+    if (u.z < conductor_multiscatter_part(r, wo.z)) wi = ggx_sample_multiscatter(u.xy, r.alpha);
     if (wi.z <= 0.0) return no_bsdf_sample();
     if (!r.multiscatter) {
         Spectrum weight = conductor_fresnel(r, c, side, dot(wo, h)) * ggx_g1(wi.z, r.alpha);

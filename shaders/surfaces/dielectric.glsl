@@ -3,7 +3,7 @@
 // indices.
 //
 // One event at a facet is modelled, so rough surfaces lose what meets a facet more often; `multiscatter`
-// gives it back as diffuse lobes on both sides after Kulla & Conty 2017, which are reciprocal and lossless.
+// gives it back as broad lobes on both sides after Kulla & Conty 2017, which are reciprocal and lossless.
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/microfacet_energy.glsl"
@@ -30,7 +30,7 @@ float dielectric_transmission_scale(SurfaceContext c, float eta) {
 }
 
 float dielectric_multiscatter_part(Dielectric r, float mu_o, float eta) {
-    return r.multiscatter ? clamp(ggx_dielectric_loss(mu_o, r.alpha, eta), 0.0, 0.9) : 0.0;
+    return r.multiscatter ? ggx_multiscatter_part(ggx_dielectric_loss(mu_o, r.alpha, eta)) : 0.0;
 }
 
 Spectrum dielectric_eval(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
@@ -59,8 +59,8 @@ float dielectric_pdf(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
                             : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta);
     if (!r.multiscatter) return single;
     float transmitted = ggx_dielectric_multiscatter_transmission(r.alpha, eta);
-    float diffuse = INV_PI * abs(wi.z) * (reflects ? 1.0 - transmitted : transmitted);
-    return mix(single, diffuse, dielectric_multiscatter_part(r, wo.z, eta));
+    float lobe = ggx_multiscatter_pdf(abs(wi.z), r.alpha) * (reflects ? 1.0 - transmitted : transmitted);
+    return mix(single, lobe, dielectric_multiscatter_part(r, wo.z, eta));
 }
 
 BsdfSample dielectric_sample_smooth(SurfaceContext c, vec3 wo, float side, float u) {
@@ -91,7 +91,7 @@ BsdfSample dielectric_sample(Dielectric r, SurfaceContext c, vec3 wo, vec3 u) {
     vec3 wi = 2.0 * cos_o * h - wo;
     if (!reflects) refract_direction(wo, h, cos_o, eta, wi);
     if (!single) {
-        wi = warp_cosine_hemisphere(u.xy);
+        wi = ggx_sample_multiscatter(u.xy, r.alpha);
         reflects = choice >= ggx_dielectric_multiscatter_transmission(r.alpha, eta);
         if (!reflects) wi.z = -wi.z;
     }

@@ -68,9 +68,6 @@ Estimates render_row() {
     scene.orthographic(0.5 * spacing, at(0.5 * spacing * double(spheres().size()), 0, 5));
     RenderPlan plan;
     plan.width = cell * uint32_t(spheres().size()), plan.height = cell, plan.passes = 1024, plan.seeds = 8;
-    // A path through rough glass weighs thousands once in some million samples (seed 6: 3700, in "rough glass
-    // .05" at pixel (140, 13)), more than these means can bear.
-    plan.first_seed = 11;
     return render_estimates(scene.import(), plan);
 }
 
