@@ -25,7 +25,6 @@ nlohmann::json flux_balance(const RenderCounters& c, double power) {
             {"lost",
              {{"escaped", escaped},
               {"depth_limit", c.forward_depth_limit_lost * lumens},
-              {"vertex_overflow", 0.0},
               {"non_finite", c.forward_non_finite}}}};
 }
 

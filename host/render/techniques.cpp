@@ -42,6 +42,7 @@ std::vector<uint32_t> ask(Device& device, Scene& scene, const std::string& file,
 
 bool find_narrow_materials(Device& device, Scene& scene) {
     if (scene.materials == 0) return false;
+    if (scene.has_narrow_materials) return *scene.has_narrow_materials;
     const auto narrow =
         ask(device, scene, "kernels/measure_lobes.comp", "MaterialLobes", uint32_t(scene.materials));
     Buffer& buffer = scene.buffers.at("Materials");
@@ -49,7 +50,8 @@ bool find_narrow_materials(Device& device, Scene& scene) {
     for (size_t i = 0; i < narrow.size(); ++i)
         if (narrow[i]) materials[i].flags |= MaterialFlag::narrow;
     buffer.write(materials.data(), materials.size() * sizeof(MaterialRecord));
-    return std::find(narrow.begin(), narrow.end(), 1u) != narrow.end();
+    scene.has_narrow_materials = std::find(narrow.begin(), narrow.end(), 1u) != narrow.end();
+    return *scene.has_narrow_materials;
 }
 
 bool has_compact_light(Device& device, Scene& scene) {

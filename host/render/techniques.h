@@ -16,8 +16,8 @@ struct Techniques {
     std::string backward_defines() const, forward_defines() const;
 };
 
-// Marks the materials that scatter into narrow lobes (asked of the classes on the device); returns whether
-// there are any.
+// Marks the materials that scatter into narrow lobes (asked of the classes on the device, once a scene);
+// returns whether there are any.
 bool find_narrow_materials(Device& device, Scene& scene);
 
 // Whether a light is seen under a small solid angle for its share of the power (asked of the classes on the

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -40,9 +41,10 @@ struct Scene {
     std::vector<Receiver> receivers;
     std::vector<std::string> warnings;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;
-    glm::dvec3 center{0};  // of the device's world coordinates
-    float radius = 0;      // m, of a sphere around everything
-    double power = 0;      // of all lights, lm
+    glm::dvec3 center{0};                      // of the device's world coordinates
+    float radius = 0;                          // m, of a sphere around everything
+    double power = 0;                          // of all lights, lm
+    std::optional<bool> has_narrow_materials;  // once asked: are any marked MaterialFlag::narrow?
     double bvh_seconds = 0, bvh_cost = 0;
     uint32_t bvh_depth = 0;
     std::filesystem::path cache_folder;
