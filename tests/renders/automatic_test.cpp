@@ -19,12 +19,17 @@ SceneBuilder lamp_over(const nlohmann::json& sphere_surface) {
     return scene;
 }
 
-AlgorithmChoice choice_for(const SceneDescription& description) {
-    Scene scene = compile_test_scene(description);
+RenderSettings automatic_settings(const Scene& scene) {
     RenderSettings settings;
     settings.width = settings.height = 32;
     settings.receiver = scene.receivers.front().ref;
-    return Renderer(test_device(), scene, settings).choice();
+    return settings;
+}
+
+// Without a renderer, which would compile its kernels.
+AlgorithmChoice choice_for(const SceneDescription& description) {
+    Scene scene = compile_test_scene(description);
+    return choose_algorithm(test_device(), scene, automatic_settings(scene));
 }
 
 }  // namespace
@@ -57,7 +62,8 @@ TEST_CASE("automatic: without light there is nothing to trace forward") {
 }
 
 TEST_CASE("automatic: a small lamp through glass is brought by forward rays") {
-    const AlgorithmChoice choice = choice_for(lamp_over({{"class", "dielectric"}}).import());
+    Scene scene = compile_test_scene(lamp_over({{"class", "dielectric"}}).import());
+    const AlgorithmChoice choice = Renderer(test_device(), scene, automatic_settings(scene)).choice();
     CHECK(choice.algorithm == Algorithm::bidirectional);
     CHECK(choice.forward_paths >= 0.25);
     CHECK(choice.forward_paths <= 16);
