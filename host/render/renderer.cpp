@@ -7,6 +7,7 @@
 #include "host/error.h"
 #include "host/render/automatic.h"
 #include "host/render/pipelines.h"
+#include "host/render/start_media.h"
 
 namespace etendue {
 namespace {
@@ -113,6 +114,9 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     scene.features.film_by_address = film_->by_address();
     BufferTable film = film_->buffers();
     film["CounterSums"] = &counter_sums_;
+    start_media_ = find_start_media(device, scene, settings.receiver,
+                                    float(settings.width) / float(settings.height), techniques.forward);
+    film["StartMedia"] = &start_media_;
     if (techniques.forward) {
         forward_ = std::make_unique<ForwardRays>(device, scene, settings_, techniques, film);
         film.merge(forward_->buffers());
@@ -186,7 +190,8 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
     };
     const size_t pixels = pixel_count(image), band = std::min<size_t>(pixels, 1 << 20);  // fits in a binding
     const Buffer buffer(device_, band * sizeof(Aov), "Aovs");
-    const Kernel kernel = make_kernel(device_, scene_, "kernels/trace_aovs.comp", {{"Aovs", &buffer}});
+    const Kernel kernel = make_kernel(device_, scene_, "kernels/trace_aovs.comp",
+                                      {{"Aovs", &buffer}, {"StartMedia", &start_media_}});
     std::vector<Aov> aovs;
     for (size_t first = 0; first < pixels; first += band) {
         const size_t count_here = std::min(band, pixels - first);

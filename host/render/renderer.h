@@ -108,6 +108,7 @@ class Renderer {
     Schedule schedule_;
     std::unique_ptr<Film> film_;
     Buffer counter_sums_;
+    Buffer start_media_;                    // none where the scene has no media
     std::unique_ptr<ForwardRays> forward_;  // null = none
     std::unique_ptr<Pipeline> pipeline_;
     CommandList commands_;

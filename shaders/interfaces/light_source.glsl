@@ -47,10 +47,11 @@ struct EmittedRay {
     float pdf;          // density, 1/(m² sr); delta positions: 1/sr; delta directions: 1/m²; 0 = no ray. radiance / pdf is
                         // the flux that the ray carries
     bool is_delta;      // rays can never hit the light
+    bool front;         // leaves on the side of the surface's geometric normal; true where there is no surface
 };
 
 EmittedRay no_emitted_ray() {
-    return EmittedRay(vec3(0), vec3(0), vec3(0, 0, 1), vec3(0, 0, 1), Spectrum(0), 0.0, true);
+    return EmittedRay(vec3(0), vec3(0), vec3(0, 0, 1), vec3(0, 0, 1), Spectrum(0), 0.0, true, true);
 }
 
 // The point of a surface light that a ray has hit; unused by lights at infinity.

@@ -73,7 +73,8 @@ EmittedRay area_emit(AreaLight r, SceneBounds bounds, vec2 u_position, vec2 u_di
     vec2 uv0 = vec2(0), uv1 = vec2(0);
     if (materials[r.material].emission_texture.index != NO_RECORD) primitive_uv(r.primitive, g.position, uv0, uv1);
     Spectrum radiance = material_emission(r.material, front, uv0, uv1);
-    return EmittedRay(g.position, error, normal, direction, radiance, (both ? 0.5 : 1.0) * INV_PI * g.pdf, false);
+    return EmittedRay(g.position, error, normal, direction, radiance, (both ? 0.5 : 1.0) * INV_PI * g.pdf, false,
+                      front);
 }
 
 float area_pdf_emit(AreaLight r, SceneBounds bounds, vec3 direction, LightHit hit) {

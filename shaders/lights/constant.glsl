@@ -21,7 +21,7 @@ Spectrum constant_radiance(ConstantEnvironment r, vec3 direction, LightHit hit) 
 EmittedRay constant_emit(ConstantEnvironment r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
     vec3 direction = constant_direction(u_direction);
     return EmittedRay(outer_disk_point(bounds, direction, u_position), vec3(0), direction, direction,
-                      spectrum_value(r.radiance), 0.25 * INV_PI * outer_disk_pdf(bounds), false);
+                      spectrum_value(r.radiance), 0.25 * INV_PI * outer_disk_pdf(bounds), false, true);
 }
 
 float constant_pdf_emit(ConstantEnvironment r, SceneBounds bounds, vec3 direction, LightHit hit) {

@@ -16,7 +16,7 @@ Spectrum directional_radiance(DirectionalLight r, vec3 direction, LightHit hit) 
 EmittedRay directional_emit(DirectionalLight r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
     vec3 direction = -normalize(r.placement.world_from_local[2]);
     return EmittedRay(outer_disk_point(bounds, direction, u_position), vec3(0), direction, direction,
-                      spectrum_value(r.color) * r.intensity, outer_disk_pdf(bounds), true);
+                      spectrum_value(r.color) * r.intensity, outer_disk_pdf(bounds), true, true);
 }
 
 float directional_pdf_emit(DirectionalLight r, SceneBounds bounds, vec3 direction, LightHit hit) {

@@ -149,7 +149,7 @@ float image_pdf_towards(ImageEnvironment r, vec3 point, vec3 direction, LightHit
 EmittedRay image_emit(ImageEnvironment r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
     LightSample l = image_sample_towards(r, vec3(0), u_direction);
     return EmittedRay(outer_disk_point(bounds, -l.direction, u_position), vec3(0), -l.direction, -l.direction, l.radiance,
-                      l.pdf * outer_disk_pdf(bounds), false);
+                      l.pdf * outer_disk_pdf(bounds), false, true);
 }
 
 float image_pdf_emit(ImageEnvironment r, SceneBounds bounds, vec3 direction, LightHit hit) {

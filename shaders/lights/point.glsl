@@ -26,7 +26,7 @@ EmittedRay point_emit(PointLight r, SceneBounds bounds, vec2 u_position, vec2 u_
     vec2 around = cos_sin_turns(u_direction.y) * sqrt(4.0 * u_direction.x * (1.0 - u_direction.x));
     vec3 direction = vec3(around, z);
     return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction, spectrum_value(r.color) * r.intensity,
-                      0.25 * INV_PI, true);
+                      0.25 * INV_PI, true, true);
 }
 
 float point_pdf_emit(PointLight r, SceneBounds bounds, vec3 direction, LightHit hit) { return 0.25 * INV_PI; }

@@ -71,7 +71,7 @@ EmittedRay spot_emit(SpotLight r, SceneBounds bounds, vec2 u_position, vec2 u_di
     vec3 direction = normalize(frame_around(spot_axis(r)) * vec3(around, 1.0 - v));
     float falloff = square(t);
     return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction,
-                      spectrum_value(r.color) * (r.intensity * falloff), falloff / spot_solid_angle(f), true);
+                      spectrum_value(r.color) * (r.intensity * falloff), falloff / spot_solid_angle(f), true, true);
 }
 
 float spot_pdf_emit(SpotLight r, SceneBounds bounds, vec3 direction, LightHit hit) {

@@ -1,6 +1,7 @@
 // Starts a backward path: a point of the pixel (box filter), the receiver's ray through it.
 #include "interfaces/receiver.glsl"
 #include "lib/path.glsl"
+#include "lib/start_media.glsl"
 #if BIDIRECTIONAL
 #include "lib/forward_pass.glsl"
 #endif
@@ -16,7 +17,7 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.radiance = Spectrum(0);
     path.reference = ray.origin;
     path.pdf = 0.0;
-    path.medium = NO_RECORD;
+    path.medium = receiver_start_medium();
     path.depth = 0u;
 #if BIDIRECTIONAL
     path.vcm = float(forward_pass.count) * ray.connect_pdf / (ray.density * float(size.x) * float(size.y));

@@ -5,6 +5,7 @@
 #include "lib/light_selection.glsl"
 #include "lib/primitives.glsl"
 #include "lib/path.glsl"
+#include "lib/start_media.glsl"
 
 Path emit_light_ray(uint index) {
     Path path;
@@ -20,7 +21,7 @@ Path emit_light_ray(uint index) {
     path.radiance = Spectrum(0);
     path.reference = ray.origin;
     path.pdf = 0.0;
-    path.medium = NO_RECORD;
+    path.medium = light_start_medium(light, ray.front);
     path.depth = 0u;
 #if BIDIRECTIONAL
     path.vcm = 1.0 / density;  // times the density of sampling the light, known at the first vertex
