@@ -44,7 +44,7 @@ EmittedRay line_emit(Line r, SceneBounds bounds, vec2 u_position, vec2 u_directi
     float z = 1.0 - 2.0 * u_direction.x;
     vec3 direction = vec3(cos_sin_turns(u_direction.y) * sqrt(max(0.0, 1.0 - z * z)), z);
     return EmittedRay(line_point(r, u_position.x), vec3(0), direction, direction, spectrum_value(r.color) * r.intensity,
-                      line_emission_pdf(r), true);
+                      line_emission_pdf(r), true, true);
 }
 float line_pdf_emit(Line r, SceneBounds bounds, vec3 direction, LightHit hit) { return line_emission_pdf(r); }
 
@@ -76,7 +76,8 @@ Spectrum dome_radiance(Dome r, vec3 direction, LightHit hit) { return spectrum_v
 EmittedRay dome_emit(Dome r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
     vec3 direction = -warp_cosine_hemisphere(u_direction);
     return EmittedRay(outer_disk_point(bounds, direction, u_position), vec3(0), direction, direction,
-                      spectrum_value(r.zenith) * -direction.z, dome_density(-direction) * outer_disk_pdf(bounds), false);
+                      spectrum_value(r.zenith) * -direction.z, dome_density(-direction) * outer_disk_pdf(bounds), false,
+                      true);
 }
 float dome_pdf_emit(Dome r, SceneBounds bounds, vec3 direction, LightHit hit) {
     return dome_density(direction) * outer_disk_pdf(bounds);
