@@ -15,9 +15,27 @@ struct Comparison {
     float merge_radius = 0.1f;  // bias of merging grows with its square
 };
 
-// Pixels and tiles of 8 x 8 by Student's t over the seeds: a false alarm in 1000 runs each. The mean of all
-// by four standard errors: one in 1000 (15 degrees of freedom). Seeds are fixed, so a build either passes
-// always or never.
+// Two sets of images of one scene, by what one is called. Pixels and tiles of 8 x 8 by Student's t over the
+// seeds: a false alarm in 1000 runs each. The mean of all by four standard errors: one in 1000 (15 degrees of
+// freedom). Seeds are fixed, so a build either passes always or never.
+inline void check_agreement(const std::string& name, const Estimates& e, const Estimates& expected,
+                            double tolerance, double largest_error = 0.005) {
+    const Agreement pixels = agreement(e, expected, 1), tiles = agreement(e, expected, 8);
+    const WindowMean ours = window_mean(e), theirs = window_mean(expected);
+    const double error = std::hypot(ours.standard_error, theirs.standard_error);
+    const double bias = ours.mean - theirs.mean;
+    MESSAGE(name, ": pixels ", describe(pixels), "; tiles ", describe(tiles), "; bias ",
+            100 * bias / theirs.mean, " % +- ", 100 * error / theirs.mean, " %");
+    CAPTURE(name);
+    CHECK(theirs.mean > 0);
+    CHECK(pixels.holds);
+    CHECK(tiles.holds);
+    CHECK(pixels.rms_z < 1.15);
+    CHECK(tiles.rms_z < 1.4);
+    CHECK(std::fabs(bias) < tolerance * theirs.mean + 4 * error);
+    CHECK(error < largest_error * theirs.mean);  // otherwise the check above says little
+}
+
 inline void check_against_backward(Scene& scene, const Comparison& c) {
     RenderPlan plan;
     plan.width = c.width, plan.height = c.height, plan.seeds = c.seeds;
@@ -26,23 +44,8 @@ inline void check_against_backward(Scene& scene, const Comparison& c) {
     const Estimates expected = render_estimates(scene, plan);
     const auto check = [&](Algorithm algorithm, uint32_t passes, uint32_t first_seed) {
         if (passes == 0) return;
-        const std::string name = algorithm_name(algorithm);
         plan.algorithm = algorithm, plan.passes = passes, plan.first_seed = first_seed;
-        const Estimates e = render_estimates(scene, plan);
-        const Agreement pixels = agreement(e, expected, 1), tiles = agreement(e, expected, 8);
-        const WindowMean ours = window_mean(e), theirs = window_mean(expected);
-        const double error = std::hypot(ours.standard_error, theirs.standard_error);
-        const double bias = ours.mean - theirs.mean;
-        MESSAGE(name, ": pixels ", describe(pixels), "; tiles ", describe(tiles), "; bias ",
-                100 * bias / theirs.mean, " % +- ", 100 * error / theirs.mean, " %");
-        CAPTURE(name);
-        CHECK(theirs.mean > 0);
-        CHECK(pixels.holds);
-        CHECK(tiles.holds);
-        CHECK(pixels.rms_z < 1.15);
-        CHECK(tiles.rms_z < 1.4);
-        CHECK(std::fabs(bias) < c.tolerance * theirs.mean + 4 * error);
-        CHECK(error < 0.005 * theirs.mean);  // otherwise the check above says little
+        check_agreement(algorithm_name(algorithm), render_estimates(scene, plan), expected, c.tolerance);
     };
     check(Algorithm::forward, c.forward, 1001);
     check(Algorithm::bidirectional, c.bidirectional, 2001);
