@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include "host/bench/statistics.h"
 #include "host/render/forward_rays.h"
 #include "tests/renders/algorithm_comparison.h"
 
@@ -160,4 +162,31 @@ TEST_CASE("what merging leaks past a thin wall shrinks as the radius does") {
         CHECK(window_mean(e, far).mean < 1e-3 * at_wall);
     }
     CHECK(leak[1] < 0.55 * leak[0]);
+}
+
+// Variance grows as 1 / r² from pass to pass and the bias shrinks as r², so that r² ~ pass^(-1/3) makes the
+// mean square of both fall as passes^(-2/3) (Knaus & Zwicker 2011, section 4). The light that comes without
+// the mirror is unbiased and falls faster.
+TEST_CASE("what merging brings converges as passes^(-2/3) or faster" * doctest::test_suite("long")) {
+    SceneBuilder s = mirrored_floor();
+    s.rectangle(8, 8, s.lambertian(reflectance), at(0, 0, 0));
+    Scene scene = compile_test_scene(s.import());
+    const std::vector<double> exact = floor_radiance(0, 1);
+    for (const double radius : {0.1, 0.8}) {  // m; noise is the larger part, then the bias
+        std::vector<double> x, y;
+        for (const uint32_t passes : {4u, 16u, 64u, 256u, 1024u}) {
+            const uint32_t seeds = passes < 100 ? 32 : 8;
+            const Estimates e = render_estimates(scene, floor_plan(radius, passes, seeds));
+            double mse = 0;
+            for (const auto& image : e.images)
+                for (size_t i = 0; i < exact.size(); ++i)
+                    mse += std::pow(image[i] / exact[i] - 1, 2) / double(exact.size() * e.images.size());
+            MESSAGE("radius ", radius, " m, ", passes, " passes: mean square error ", mse);
+            x.push_back(std::log(passes)), y.push_back(std::log(mse));
+        }
+        const auto fit = fit_line(x, y);
+        REQUIRE(fit);
+        MESSAGE("radius ", radius, " m: slope ", fit->slope, " +- ", fit->slope_error);
+        CHECK(fit->slope < -2.0 / 3 + 0.04);
+    }
 }
