@@ -16,7 +16,10 @@ SceneBuilder scaled_room(double scale) {
     SceneBuilder s;
     add_room(s);
     add_lamp(s, 1.5);
-    s.light({{"type", "point"}, {"intensity", 2 * scale * scale}, {"color", {1, 0.6, 0.3}}},
+    // On the wall behind, past glass and mirror: backward rays never find what these make of such a light.
+    s.light({{"type", "spot"},
+             {"intensity", 4 * scale * scale},
+             {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.4}}}},
             at(1.2, 0.8, 0.5));
     s.medium("glass", {{"ior", 1.5}, {"absorption", {0.1 / scale, 0.2 / scale, 0.4 / scale}}});  // 1/m
     s.sphere(0.6, s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}),
@@ -103,8 +106,17 @@ TEST_SUITE("long") {
         REQUIRE(merged.instances == 0);
         RenderPlan plan;
         plan.width = 32, plan.height = 24, plan.seeds = 16, plan.passes = 64;
-        check_agreement("instances", render_estimates(scene, plan), render_estimates(merged, plan), 0.0005,
-                        0.002);
+        const Estimates ours = render_estimates(scene, plan), theirs = render_estimates(merged, plan);
+        const Agreement tiles = agreement(ours, theirs, 8);
+        const WindowMean a = window_mean(ours), b = window_mean(theirs);
+        MESSAGE("instances and merged: ", a.mean, " and ", b.mean, "; tiles ", describe(tiles));
+        CHECK(tiles.holds);
+        CHECK(tiles.rms_z < 1.4);
+        CHECK(a.mean == doctest::Approx(b.mean).epsilon(0.001));
+        // Normals are interpolated before the scale or after it, so where the noise is the same in both,
+        // facets of 3 degrees leave a difference.
+        for (size_t i = 0; i < ours.mean.size(); ++i)
+            CHECK(ours.mean[i] == doctest::Approx(theirs.mean[i]).epsilon(0.1));
     }
 
     TEST_CASE("algorithms agree: foils with holes and shades by textures of alpha") {
@@ -112,7 +124,8 @@ TEST_SUITE("long") {
         SceneBuilder s;
         add_room(s);
         add_lamp(s, 1.2);
-        s.light({{"type", "point"}, {"intensity", 2}, {"color", {1, 0.6, 0.3}}}, at(1, 1.4, 0.6));
+        // No point: backward rays must meet it in glass and mirror.
+        s.sphere(0.3, s.black_emitter({6, 4, 3}), at(1.2, 1.2, 0.6));
         const auto foil = [&](const char* name, const char* mode) {
             const int texture =
                 add_texture(s, folder, name, 16, [](float u, float v) { return glm::vec3(u, v, 0.5f); });

@@ -14,7 +14,7 @@ namespace {
 
 // Scenes whose light is rarely found by backward rays, and what forward rays leave to them: one path in some
 // thousand meets the lamp. Passes of backward and forward rays.
-const std::map<std::string, uint32_t> rare_light = {{"caustic_box", 8192}, {"pool", 16384}};
+const std::map<std::string, uint32_t> rare_light = {{"caustic_box", 2048}, {"pool", 4096}};
 
 std::vector<std::filesystem::path> scene_files() {
     std::vector<std::filesystem::path> files;
@@ -35,6 +35,7 @@ TEST_CASE("algorithms agree: every scene in scenes/" * doctest::test_suite("long
             MESSAGE(name);
             Comparison c;
             c.width = 32, c.height = 24, c.seeds = 16;
+            c.largest_error = 0.02;  // glass hides lamps from forward rays, too
             if (const auto rare = rare_light.find(name); rare != rare_light.end())
                 c.backward = c.forward = rare->second;
             Scene scene = compile_test_scene(import_gltf(file));
