@@ -228,8 +228,11 @@ std::vector<glm::vec3> estimate_errors(const FilmSums& film) {
 double RelativeError::value() const { return std::sqrt(mean_square); }
 
 double RelativeError::bound() const {
-    const double quantile = 1.645;  // of a normal distribution, 95 %
-    return std::sqrt(mean_square + quantile * deviation);
+    // The few bright pixels that make most of the estimate make its deviation, too: both are too small
+    // together. So it is the logarithm that is taken as normally distributed.
+    const double quantile = 1.645;  // 95 %
+    return mean_square > 0 ? std::sqrt(mean_square * std::exp(quantile * deviation / mean_square))
+                           : mean_square;
 }
 
 RelativeError estimate_relative_error(const FilmSums& film) {

@@ -187,8 +187,8 @@ TEST_SUITE("long") {
         if (!scene) return;
         Subject subject(*scene, 65536);
         check(measure(subject, "plates", 16, 64), {0.9, 1.8, 0.65, 0.93}, 0.85);
-        for (const uint32_t passes : {64u, 256u})
-            check(measure(subject, "plates", passes, 64), {0.9, 1.1, 0.65, 0.93}, 0.85);
+        check(measure(subject, "plates", 64, 64), {0.9, 1.25, 0.65, 0.93}, 0.85);
+        check(measure(subject, "plates", 256, 64), {0.9, 1.1, 0.65, 0.93}, 0.85);
         CHECK(stops_rightly(subject, 0.1, 64) >= 0.87);
     }
     TEST_CASE("the error layer is honest over 64 seeds: spheres in a furnace") {
@@ -201,7 +201,7 @@ TEST_SUITE("long") {
         CHECK(stops_rightly(subject, 0.02, 64) >= 0.87);
     }
     TEST_CASE("the error layer knows of rare bright paths as far as the image has met them: a caustic") {
-        Subject subject(caustic(), 400000);
+        Subject subject(caustic(), 100000);
         // Paths of a probability of 1e-4 make most of the variance. Where none of them came near a pixel
         // nothing tells of them: the errors are too small by a factor that falls with the passes.
         for (const uint32_t passes : {64u, 256u})
