@@ -6,6 +6,7 @@
 #include "host/render/start_media.h"
 #include "host/scene/scene_compiler.h"
 #include "tests/renders/algorithm_comparison.h"
+#include "tests/renders/algorithm_comparison.h"
 #include "tests/renders/cell_row.h"
 
 using namespace etendue;
@@ -184,4 +185,43 @@ TEST_CASE("cameras and lights within absorbing media: what is left is what Beer 
                     at(4, 0, 0.5 * (fog_lo + fog_hi)));
         });
     }
+}
+
+TEST_CASE("algorithms agree: a diver's view of a pool, lights in the water and above it") {
+    SceneBuilder s;
+    s.medium("water", {{"ior", 1.33}, {"absorption", {0.5, 0.2, 0.1}}});
+    s.medium("ink", {{"ior", 1.33}, {"absorption", {1, 2, 3}}});
+    add_box(s, {4, 4, 4}, s.lambertian({0.7, 0.5, 0.6}), true, at(0, 0, 0));
+    s.perspective(1.2, at(0, 0, 1.95));
+    // The water stands upright, from the plane z = 0.3 to the camera.
+    s.rectangle(4, 4,
+                s.material({{"surface", {{"class", "dielectric"}, {"alpha", 0.3}}}, {"inside", "water"}}),
+                {{0, 0, 0.3}, {0, 1, 0, 0}});
+    s.rectangle(1.5, 1.5, s.black_emitter({3, 4, 5}), {{0, 1.95, -1}, {half_turn, 0, 0, half_turn}});
+    s.light({{"type", "point"}, {"intensity", 1}}, at(1, 0.5, 1));
+    s.sphere(0.3, boundary(s, "ink", "water"), at(1, 0.5, 1));
+    add_box(s, {1, 1, 0.6f}, s.lambertian(0.6), false, at(-0.8, -1.5, 0.9));
+    add_box(s, {1, 1.6f, 1}, s.lambertian(0.6), false, at(0.7, -1.2, -0.9));
+    check_against_backward(s);
+}
+
+TEST_CASE("algorithms agree: smooth coats over diffuse bases, and clear foils" *
+          doctest::test_suite("long")) {
+    SceneBuilder s;
+    add_box(s, {4, 4, 4}, s.lambertian({0.7, 0.5, 0.3}), true, at(0, 0, 0));
+    s.perspective(1.2, at(0, 0, 1.95));
+    s.rectangle(1.5, 1.5, s.black_emitter({3, 4, 5}), {{0, 1.95, 0}, {half_turn, 0, 0, half_turn}});
+    const auto coated = [&](double roughness) {
+        return s.material(json::object(), {{"pbrMetallicRoughness",
+                                            {{"baseColorFactor", {0.3, 0.5, 0.8, 1}},
+                                             {"metallicFactor", 0},
+                                             {"roughnessFactor", roughness}}}});
+    };
+    s.sphere(0.6, coated(0), at(-1.1, -1.3, 0.2));
+    s.sphere(0.6, coated(0.3), at(1.1, -1.3, 0.2));
+    add_box(s, {1, 1.2f, 1}, coated(0), false, {{0, -1.4, -1}, {0, 0.3, 0, 0.954}});
+    const int foil = s.surface({{"class", "thin_dielectric"}});
+    s.rectangle(1.5, 1.5, foil, {{-1.1, 0.2, 0}, {half_turn, 0.1, 0, half_turn}});
+    s.rectangle(1, 1, foil, at(0.6, -0.8, 1));
+    check_against_backward(s);
 }
