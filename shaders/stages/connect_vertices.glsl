@@ -25,6 +25,7 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
 
     vec3 light_direction = decode_octahedral(y.direction);
     SurfacePoint q = locate(Hit(0.0, y.uv, y.primitive, y.instance), y.position, -light_direction);
+    // A shadow ray goes straight: only boundaries lie on it, index-matched by definition, so the index here holds there.
     ScatteringPoint there = shaded_point(q, -light_direction, scattering_medium(s, direction), true);
     if (!is_consistent(there, -direction)) flatten(there, -light_direction);
     float frame = frame_probability(there, light_direction, -direction);
