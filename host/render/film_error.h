@@ -5,6 +5,10 @@
 // their means tells the variance of the mean without assuming anything, if with one degree of freedom only.
 // So the spread of a pixel's samples says how the error is distributed over the image, and the differences of
 // the halves, pooled over neighbouring pixels, say how large it is.
+//
+// After few passes the errors are understated: over glossy plates (tests/renders/error_test.cpp) the root
+// mean square of true by stated error is 1.9 after 16 passes; the test asks for less than 1.25 after 64
+// and 1.1 after 256.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
