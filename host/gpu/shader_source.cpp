@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "host/embedded_files.h"
 #include "host/error.h"
 
 namespace etendue {

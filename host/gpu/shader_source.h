@@ -5,15 +5,8 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace etendue {
-
-struct EmbeddedFile {
-    const char* name;  // relative to shaders/
-    const char* text;
-};
-const std::vector<EmbeddedFile>& embedded_shaders();
 
 // Resolves the names that #include directives and kernels use.
 struct ShaderSources {
