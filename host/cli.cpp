@@ -107,8 +107,9 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
     options.algorithm = parse_algorithm(arguments.algorithm, "--algorithm");
     options.vertex_bytes = parse_mebibytes(arguments.vertex_memory, "--vertex-memory");
-    options.color = parse_choice<ColorMode>(arguments.color, "--color",
-                                            {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}});
+    options.color = parse_choice<ColorMode>(
+        arguments.color, "--color",
+        {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
     options.polarization = parse_choice<PolarizationMode>(
         arguments.polarization, "--polarization",
         {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});

@@ -11,7 +11,6 @@
 
 namespace etendue {
 
-enum class ColorMode { automatic, rgb };
 enum class PolarizationMode { automatic, off };
 
 struct ImageSize {
@@ -25,7 +24,8 @@ struct SceneChoice {
     std::filesystem::path shaders;      // empty = those in the binary
     std::string receiver;               // name; empty = the first of the scene
     std::string device;                 // name, part of one, or index; empty = the best there is
-    std::optional<ImageSize> size;      // else 512 rows, and columns by the camera's aspect ratio
+    ColorMode color = ColorMode::automatic;
+    std::optional<ImageSize> size;  // else 512 rows, and columns by the camera's aspect ratio
 };
 
 struct RenderOptions : SceneChoice {
@@ -33,7 +33,6 @@ struct RenderOptions : SceneChoice {
     std::optional<uint64_t> passes;  // exactly one of the three goals is set; 64 passes by default
     std::optional<double> seconds, error;
     Algorithm algorithm = Algorithm::automatic;
-    ColorMode color = ColorMode::automatic;
     PolarizationMode polarization = PolarizationMode::automatic;
     Schedule schedule = Schedule::automatic;
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths

@@ -46,6 +46,10 @@ int inspect_command(const InspectOptions& options) {
             "positions only");
     feature(f.textures, "textures", "materials use images", "no material uses an image");
     feature(f.normal_maps, "normal maps", "a material has one", "no material has one");
+    feature(f.spectral, "spectral", "a value is a spectrum: paths carry four wavelengths",
+            "no value is a spectrum: paths carry three channels");
+    feature(f.dispersion, "dispersion", "a refractive index depends on the wavelength",
+            "refractive indices are the same at all wavelengths");
     feature(f.interfaces, "interfaces", "surfaces separate media", "no medium named");
     feature(f.media, "media", "a medium absorbs", "no medium absorbs");
     feature(f.straight, "straight passage",

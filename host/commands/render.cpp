@@ -46,6 +46,7 @@ nlohmann::json checkpoint_identity(const RenderOptions& options, const Scene& sc
             {"receiver", receiver.name},
             {"seed", options.seed},
             {"algorithm", algorithm_name(options.algorithm)},
+            {"color", scene.features.spectral ? "spectral" : "rgb"},
             {"device", device.description.name + " " + device.description.driver}};
 }
 

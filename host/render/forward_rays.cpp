@@ -43,9 +43,9 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
             return make_kernel(device, scene, file, table, defines);
         };
         const uint64_t most = std::max(least_vertices, uint64_t(count_) * vertices_a_path);
-        const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex;
-        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least_vertices, most)), make,
-                          settings.binding_bytes);
+        const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex(scene.features.spectral);
+        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least_vertices, most)),
+                          scene.features.spectral, make, settings.binding_bytes);
         path_ends_ = Buffer(device, uint64_t(count_) * 8, "PathEnds");
     }
     BufferTable table = buffers();

@@ -6,8 +6,8 @@ namespace etendue {
 
 Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const RenderSettings& s,
                                        const Techniques& techniques, ForwardRays* forward,
-                                       const BufferTable& film)
-    : Pipeline(s, forward) {
+                                       SpectralPasses& spectra, const BufferTable& film)
+    : Pipeline(s, forward, spectra) {
     trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", film,
                               techniques.backward_defines() + (forward ? forward->defines() : ""));
     // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
@@ -19,8 +19,9 @@ Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const Rende
 void Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
                                   KernelTimings& timings) {
     // With forward rays pass by pass: each meets its own.
-    const uint32_t at_once = forward ? 1 : count;
-    for (uint32_t done = 0; done < count; done += at_once) {
+    for (uint32_t done = 0, at_once; done < count; done += at_once) {
+        at_once = forward ? 1 : std::min(count - done, spectra.capacity());
+        spectra.write(first + done, at_once, settings.seed);
         if (forward) forward->trace(commands, first + done, settings.seed, timings);
         commands.dispatch(trace_paths, groups,
                           {{"receiver", settings.receiver},

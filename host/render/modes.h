@@ -21,4 +21,11 @@ enum class Schedule {
 };
 const char* schedule_name(Schedule schedule);
 
+// What paths carry.
+enum class ColorMode {
+    automatic,  // wavelengths where the scene has a spectrum
+    rgb,        // three channels
+    spectral,   // four wavelengths a pass
+};
+
 }  // namespace etendue

@@ -8,7 +8,8 @@
 namespace etendue {
 
 struct Renderer::Pipeline {
-    Pipeline(const RenderSettings& settings, ForwardRays* forward) : settings(settings), forward(forward) {}
+    Pipeline(const RenderSettings& settings, ForwardRays* forward, SpectralPasses& spectra)
+        : settings(settings), forward(forward), spectra(spectra) {}
     virtual ~Pipeline() = default;
     // Runs passes [first, first + count).
     virtual void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) = 0;
@@ -16,11 +17,12 @@ struct Renderer::Pipeline {
     virtual void warm_up(CommandList& commands) = 0;
     RenderSettings settings;
     ForwardRays* forward;  // null = none
+    SpectralPasses& spectra;
 };
 
 struct Renderer::FusedPipeline : Pipeline {
     FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Techniques& techniques,
-                  ForwardRays* forward, const BufferTable& film);
+                  ForwardRays* forward, SpectralPasses& spectra, const BufferTable& film);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     Kernel trace_paths;
@@ -29,8 +31,8 @@ struct Renderer::FusedPipeline : Pipeline {
 
 struct Renderer::WavefrontPipeline : Pipeline {
     WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings,
-                      const Techniques& techniques, ForwardRays* forward, const BufferTable& film,
-                      bool by_class);
+                      const Techniques& techniques, ForwardRays* forward, SpectralPasses& spectra,
+                      const BufferTable& film, bool by_class);
     void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     // One batch: `samples` samples of the pixels [first_pixel, first_pixel + pixels).

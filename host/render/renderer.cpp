@@ -95,6 +95,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       settings_(settings),
       schedule_(settings.schedule),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
+      spectra_(device, scene),
       commands_(device) {
     counter_sums_.fill(0);
     if (schedule_ == Schedule::automatic) schedule_ = settings_.schedule = choose_schedule(scene);
@@ -117,16 +118,17 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     start_media_ = find_start_media(device, scene, settings.receiver,
                                     float(settings.width) / float(settings.height), techniques.forward);
     film["StartMedia"] = &start_media_;
+    film.merge(spectra_.buffers());
     if (techniques.forward) {
         forward_ = std::make_unique<ForwardRays>(device, scene, settings_, techniques, film);
         film.merge(forward_->buffers());
     }
     if (schedule_ == Schedule::fused)
-        pipeline_ =
-            std::make_unique<FusedPipeline>(device, scene, settings_, techniques, forward_.get(), film);
+        pipeline_ = std::make_unique<FusedPipeline>(device, scene, settings_, techniques, forward_.get(),
+                                                    spectra_, film);
     else
         pipeline_ = std::make_unique<WavefrontPipeline>(device, scene, settings_, techniques, forward_.get(),
-                                                        film, schedule_ == Schedule::by_class);
+                                                        spectra_, film, schedule_ == Schedule::by_class);
     const auto start = std::chrono::steady_clock::now();
     if (forward_) forward_->warm_up(commands_);
     pipeline_->warm_up(commands_);
@@ -190,8 +192,8 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
     };
     const size_t pixels = pixel_count(image), band = std::min<size_t>(pixels, 1 << 20);  // fits in a binding
     const Buffer buffer(device_, band * sizeof(Aov), "Aovs");
-    const Kernel kernel = make_kernel(device_, scene_, "kernels/trace_aovs.comp",
-                                      {{"Aovs", &buffer}, {"StartMedia", &start_media_}});
+    const Kernel kernel = make_color_kernel(device_, scene_, "kernels/trace_aovs.comp",
+                                            {{"Aovs", &buffer}, {"StartMedia", &start_media_}});
     std::vector<Aov> aovs;
     for (size_t first = 0; first < pixels; first += band) {
         const size_t count_here = std::min(band, pixels - first);

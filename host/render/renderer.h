@@ -14,6 +14,7 @@
 #include "host/image/image.h"
 #include "host/render/film.h"
 #include "host/render/modes.h"
+#include "host/render/spectral_pass.h"
 #include "host/scene/scene.h"
 
 namespace etendue {
@@ -108,7 +109,8 @@ class Renderer {
     Schedule schedule_;
     std::unique_ptr<Film> film_;
     Buffer counter_sums_;
-    Buffer start_media_;                    // none where the scene has no media
+    Buffer start_media_;  // none where the scene has no media
+    SpectralPasses spectra_;
     std::unique_ptr<ForwardRays> forward_;  // null = none
     std::unique_ptr<Pipeline> pipeline_;
     CommandList commands_;

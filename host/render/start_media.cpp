@@ -9,8 +9,8 @@ Buffer find_start_media(Device& device, Scene& scene, uint32_t receiver, float f
     const uint32_t count = of_lights ? 1 + 2 * uint32_t(scene.lights) : 1;
     Buffer media(device, uint64_t(count) * 4, "StartMedia");
     const Kernel kernel =
-        make_kernel(device, scene, "kernels/find_start_media.comp", {{"StartMedia", &media}},
-                    of_lights ? "#define OF_LIGHTS 1\n" : "#define OF_LIGHTS 0\n");
+        make_color_kernel(device, scene, "kernels/find_start_media.comp", {{"StartMedia", &media}},
+                          of_lights ? "#define OF_LIGHTS 1\n" : "#define OF_LIGHTS 0\n");
     CommandList commands(device);
     for (uint64_t first = 0; first < count; first += uint64_t(max_groups) * kernel.group_size())
         commands.dispatch(kernel,

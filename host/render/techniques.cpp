@@ -28,7 +28,7 @@ namespace {
 std::vector<uint32_t> ask(Device& device, Scene& scene, const std::string& file, const std::string& answers,
                           uint32_t count) {
     const Buffer buffer(device, uint64_t(count) * 4, answers);
-    const Kernel kernel = make_kernel(device, scene, file, {{answers, &buffer}});
+    const Kernel kernel = make_color_kernel(device, scene, file, {{answers, &buffer}});
     CommandList commands(device);
     for (uint64_t first = 0; first < count; first += uint64_t(max_groups) * kernel.group_size())
         commands.dispatch(kernel,

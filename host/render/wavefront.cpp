@@ -11,18 +11,21 @@ constexpr uint32_t bounces_a_submission = 8;
 constexpr uint32_t counts_a_bounce = 3;  // twin of COUNTS_A_BOUNCE in shaders/lib/wavefront.glsl
 constexpr uint32_t all_counts = counts_a_bounce * (bounces_a_submission + 1);
 constexpr uint32_t cpu_paths = 1 << 16, gpu_paths = 1 << 20;
-constexpr uint64_t ray_bytes = 16, hit_bytes = 16, shadow_bytes = 48;
+constexpr uint64_t ray_bytes = 16, hit_bytes = 16;
+
+uint64_t spectrum_bytes(const Scene& scene) { return scene.features.spectral ? 16 : 12; }
 
 // Of struct PathState in shaders/lib/wavefront.glsl.
-uint64_t path_bytes(Wavefront::Direction direction, const Techniques& t) {
+uint64_t path_bytes(Wavefront::Direction direction, const Techniques& t, const Scene& scene) {
     const bool forward = direction == Wavefront::Direction::forward;
-    uint64_t bytes = 36;
-    if (!forward) bytes += 12;                                  // radiance
-    if (t.bidirectional) bytes += 16;                           // vcm, vc, pending, flags
-    if (t.bidirectional && forward) bytes += 16;                // light, light_normal
-    if (!t.bidirectional && t.forward && !forward) bytes += 4;  // flags of FORWARD_ONLY
-    if (forward) bytes += 8;                                    // vertices
-    if (t.merge && !forward) bytes += 12;                       // bias
+    uint64_t bytes = 24 + spectrum_bytes(scene);   // throughput and what else all have
+    if (!forward) bytes += spectrum_bytes(scene);  // radiance
+    if (t.bidirectional) bytes += 16;              // vcm, vc, pending, flags
+    if (t.bidirectional && forward) bytes += 16;   // light, light_normal
+    const bool forward_only = t.forward && !t.bidirectional && !forward;
+    if (!t.bidirectional && (forward_only || scene.features.dispersion)) bytes += 4;  // flags
+    if (forward) bytes += 8;                                                          // vertices
+    if (t.merge && !forward) bytes += spectrum_bytes(scene);                          // bias
     return bytes;
 }
 
@@ -50,7 +53,8 @@ Wavefront::Wavefront(Device& device, Scene& scene, Direction direction, const Te
     : slots_(slots), items_a_lane_(device.description.type == "CPU" ? 16 : 1) {
     const bool forward = direction == Direction::forward;
     shadow_queues_ = scene.features.light_count == 0 ? 0 : techniques.connect && !forward ? 2 : 1;
-    const uint64_t n = slots, state_bytes = path_bytes(direction, techniques);
+    const uint64_t n = slots, state_bytes = path_bytes(direction, techniques, scene),
+                   shadow_bytes = 36 + spectrum_bytes(scene);
     ray_origins_ = Buffer(device, n * ray_bytes, "RayOrigins");
     ray_directions_ = Buffer(device, n * ray_bytes, "RayDirections");
     path_states_ = Buffer(device, n * state_bytes, "PathStates");
@@ -150,9 +154,11 @@ void Wavefront::record_bounce(CommandList& commands, uint32_t bounce, uint32_t a
                                {"slots", slots_}});
         commands.dispatch(scatter_paths_[c], groups(scatter_paths_[c], alive, items_a_lane_), all);
     }
-    for (uint32_t q = 0; q < shadow_queues_; ++q)
-        commands.dispatch(find_occlusions_, groups(find_occlusions_, alive, items_a_lane_),
-                          {{"counter", counter + 1 + q}, {"first_ray", q * slots_}});
+    for (uint32_t q = 0; q < shadow_queues_; ++q) {
+        std::vector<PushValue> all = values;
+        all.insert(all.end(), {{"counter", counter + 1 + q}, {"first_ray", q * slots_}});
+        commands.dispatch(find_occlusions_, groups(find_occlusions_, alive, items_a_lane_), all);
+    }
 }
 
 void Wavefront::warm_up(CommandList& commands) {

@@ -22,8 +22,9 @@ BufferTable joined(BufferTable a, const BufferTable& b) {
 
 Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& s,
                                                const Techniques& techniques, ForwardRays* forward,
-                                               const BufferTable& film, bool by_class)
-    : Pipeline(s, forward),
+                                               SpectralPasses& spectra, const BufferTable& film,
+                                               bool by_class)
+    : Pipeline(s, forward, spectra),
       paths(device, scene, Wavefront::Direction::backward, techniques,
             slots_for(device, s.width * s.height, forward), by_class, film,
             forward ? forward->defines() : ""),
@@ -34,8 +35,10 @@ void Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uin
                                       KernelTimings& timings) {
     const uint32_t pixels = settings.width * settings.height;
     const uint32_t tile = std::min(pixels, paths.slots());
-    const uint32_t samples_at_once = forward ? 1 : std::max(1u, paths.slots() / pixels);
+    const uint32_t samples_at_once =
+        forward ? 1 : std::min(std::max(1u, paths.slots() / pixels), spectra.capacity());
     for (uint32_t sample = 0; sample < count; sample += samples_at_once) {
+        spectra.write(first + sample, std::min(samples_at_once, count - sample), settings.seed);
         if (forward) forward->trace(commands, first + sample, settings.seed, timings);
         for (uint32_t pixel = 0; pixel < pixels; pixel += tile)
             run_tile(commands, pixel, std::min(tile, pixels - pixel), uint32_t(first) + sample,

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "host/spectra/color.h"
+
 namespace etendue {
 
 Features Features::everything() {
@@ -29,6 +31,10 @@ std::string Features::defines() const {
     define("HAS_MEDIA", media);
     define("HAS_INTERFACES", interfaces);
     define("HAS_STRAIGHT", straight);
+    define("SPECTRAL", spectral);
+    define("HAS_DISPERSION", spectral && dispersion);
+    if (spectral) define("SPECTRUM_COUNT", spectrum_count);
+    if (spectral) define("COLOR_LATTICE", color_lattice);
     define("HAS_LIGHT_TREE", light_tree);
     define("NODES_BY_ADDRESS", nodes_by_address);
     define("PRIMITIVES_BY_ADDRESS", primitives_by_address);

@@ -17,6 +17,9 @@ struct Features {
     bool media = false;       // some medium absorbs
     bool interfaces = false;  // some surface separates media: paths keep track of where they are
     bool straight = false;    // some surface lets light pass straight on: shadow rays go through
+    bool spectral = false;    // paths carry wavelengths instead of colours
+    bool dispersion = false;  // some refractive index depends on the wavelength
+    uint32_t spectrum_count = 0;
     bool light_tree = false;
     bool nodes_by_address = false;  // arrays too large for one binding
     bool primitives_by_address = false;

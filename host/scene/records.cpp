@@ -33,8 +33,14 @@ int vector_length(const std::string& type) {
     return type == "vec2" ? 2 : type == "vec3" ? 3 : type == "vec4" ? 4 : 0;
 }
 
+// Lights carry radiance or a colour of it; a unit "ior" marks refractive indices.
+SpectralKind spectral_kind(const Parameter& p, Interface interface) {
+    if (interface == Interface::light) return SpectralKind::radiance;
+    return p.unit == "ior" ? SpectralKind::index : SpectralKind::factor;
+}
+
 // One parameter, from its JSON value, into the record.
-void fill_parameter(const Parameter& p, const json& value, const std::string& where,
+void fill_parameter(const Parameter& p, const json& value, const std::string& where, Interface interface,
                     const RecordResolver& resolver, std::vector<std::byte>& record) {
     const std::string& type = p.member.type;
     const uint32_t at = p.member.offset;
@@ -59,12 +65,13 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
             store(record, at, uint32_t(value.get<int64_t>()));
         }
     } else if (type == "SpectrumRef") {
-        if (value.is_null()) return store(record, at, glm::vec4(-1, -1, -1, 0));
-        const glm::vec3 rgb = spectral_value(value, resolver.scene, where);
-        for (int i = 0; i < 3; ++i)
-            if (!p.in_range(rgb[i]))
-                fail_input("{}: {} is out of range; allowed:{}", place, rgb[i], allowed(p));
-        store(record, at, glm::vec4(rgb, 0));
+        const SpectralKind kind = spectral_kind(p, interface);
+        SpectralValue spectrum{glm::vec3(-1), {}};
+        if (!value.is_null()) spectrum = spectral_value(value, resolver.scene, where, kind);
+        for (const float x : {spectrum.least(), spectrum.greatest()})
+            if (!value.is_null() && !p.in_range(x))
+                fail_input("{}: {} is out of range; allowed:{}", place, x, allowed(p));
+        store(record, at, SpectrumRef{spectrum.rgb, resolver.spectrum(spectrum, kind)});
     } else if (type == "TextureRef") {
         store(record, at, value.is_null() ? no_record : resolver.texture(value, p.unit != "data", where));
     } else if (type == "MediumRef") {
@@ -87,38 +94,6 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
 }
 
 }  // namespace
-
-std::string message_place(const SceneDescription& scene, const std::string& where) {
-    return fmt::format("{}: {}", scene.file.string(), where.empty() ? "/" : where);
-}
-
-glm::vec3 spectral_value(const json& value, const SceneDescription& scene, const std::string& where) {
-    const std::string place = message_place(scene, where);
-    const auto number = [&](const json& v) {
-        if (!v.is_number() || !std::isfinite(v.get<double>()) || std::abs(v.get<double>()) > 3e38)
-            fail_input("{}: {} is not a finite number", place, v.dump());
-        return float(v.get<double>());
-    };
-    if (value.is_number()) return glm::vec3(number(value));
-    if (value.is_array() && value.size() == 3) return {number(value[0]), number(value[1]), number(value[2])};
-    if (value.is_object() && value.contains("name")) {
-        const auto found = value["name"].is_string() ? scene.spectra.find(value["name"].get<std::string>())
-                                                     : scene.spectra.end();
-        if (found == scene.spectra.end())
-            fail_input("{}: {} is not the name of a spectrum", place, value["name"].dump());
-        // A named spectrum may not name another one: that could go round in circles.
-        if (found->second.is_object() && found->second.contains("name"))
-            fail_input("{}: the spectrum {} names another spectrum", place, value["name"].dump());
-        return spectral_value(found->second, scene, where);
-    }
-    if (value.is_object())
-        fail_input(
-            "{}: tabulated spectra need spectral rendering, which this version does not have; allowed: a "
-            "number or "
-            "[r, g, b]",
-            place);
-    fail_input("{}: not a spectral value; allowed: a number, [r, g, b] or {{\"name\": …}}", place);
-}
 
 std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescription& object,
                                    const std::optional<glm::dmat4>& placement,
@@ -148,7 +123,7 @@ std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescriptio
                            message_place(resolver.scene, object.where), interface_info(info.interface).name,
                            info.name, p.member.name, p.text);
             fill_parameter(p, given ? object.parameters[p.member.name] : p.default_value,
-                           object.where + "/" + p.member.name, resolver, record);
+                           object.where + "/" + p.member.name, info.interface, resolver, record);
         }
     }
     return record;

@@ -11,8 +11,15 @@
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
 #include "host/scene/environment_map.h"
+#include "host/scene/spectral_value.h"
 
 namespace etendue {
+
+// Twin of struct SpectrumRef in shaders/lib/spectrum.glsl.
+struct SpectrumRef {
+    glm::vec3 rgb{0};    // linear Rec.709
+    uint32_t table = 0;  // index into Scene::spectra
+};
 
 // What typed members of a record refer to.
 struct RecordResolver {
@@ -22,6 +29,9 @@ struct RecordResolver {
     std::function<uint32_t(const nlohmann::json& info, bool color, const std::string& where)> texture;
     std::function<EnvironmentMapRef(const std::filesystem::path& file, const std::string& where)>
         environment_map;
+    // Index of the table that a spectrum has where paths carry wavelengths.
+    std::function<uint32_t(const SpectralValue& value, SpectralKind kind)> spectrum =
+        [](const SpectralValue&, SpectralKind) { return 0u; };
 };
 
 constexpr uint32_t no_record = 0xFFFFFFFFu;
@@ -32,13 +42,6 @@ constexpr uint32_t record_ref(uint32_t tag, uint32_t index) { return tag << 24 |
 std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescription& object,
                                    const std::optional<glm::dmat4>& placement,
                                    const RecordResolver& resolver);
-
-// A spectral value of the scene format as linear Rec.709.
-glm::vec3 spectral_value(const nlohmann::json& value, const SceneDescription& scene,
-                         const std::string& where);
-
-// "FILE: /pointer": the start of a message about an object of the scene.
-std::string message_place(const SceneDescription& scene, const std::string& where);
 
 // The records of one interface in one buffer: each class's region starts at a multiple of its stride, so that
 // all classes can be typed views of the buffer's start.

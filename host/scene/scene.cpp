@@ -15,6 +15,9 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
       options_(options),
       threads_(options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency())),
       resolver_{description, {}, {}, {}} {
+    resolver_.spectrum = [this](const SpectralValue& value, SpectralKind kind) {
+        return add_spectrum(value, kind);
+    };
     resolver_.texture = [this](const nlohmann::json& info, bool color, const std::string& where) {
         const auto content = color ? TextureContent::color : TextureContent::data;
         return texture_index(textures_,
@@ -31,6 +34,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
 
 Scene SceneCompiler::run() {
     out_.warnings = in_.warnings;
+    add_spectrum({glm::vec3(1), {}}, SpectralKind::radiance);  // white light: lib/spectrum.glsl
     out_.cache_folder = options_.cache_folder;
     out_.sources.folder = options_.shaders;
     out_.registry = std::make_unique<ClassRegistry>(out_.sources);
@@ -48,6 +52,7 @@ Scene SceneCompiler::run() {
     add_textures();
     write_headers();
     measure_lights();
+    choose_color();
     return std::move(out_);
 }
 
@@ -158,6 +163,14 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
     BufferTable table = buffers;
     for (const auto& [name, buffer] : scene.buffers) table.emplace(name, &buffer);
     return Kernel(device, shader, table);
+}
+
+Kernel make_color_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
+                         const std::string& defines) {
+    const bool spectral = std::exchange(scene.features.spectral, false);
+    Kernel kernel = make_kernel(device, scene, file, buffers, defines);
+    scene.features.spectral = spectral;
+    return kernel;
 }
 
 }  // namespace etendue

@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "host/gpu/kernel.h"
+#include "host/render/modes.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
 #include "host/scene/features.h"
+#include "host/spectra/spectrum.h"
 #include "host/scene/records.h"
 #include "host/scene/world.h"
 
@@ -41,9 +43,12 @@ struct Scene {
     std::vector<Receiver> receivers;
     std::vector<std::string> warnings;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;
-    glm::dvec3 center{0};                      // of the device's world coordinates
-    float radius = 0;                          // m, of a sphere around everything
-    double power = 0;                          // of all lights, lm
+    glm::dvec3 center{0};  // of the device's world coordinates
+    float radius = 0;      // m, of a sphere around everything
+    double power = 0;      // of all lights, lm
+    // That records refer to, radiances in units of even_luminance; the first is white light. Empty in
+    // colours.
+    std::vector<SpectralTable> spectra;
     std::optional<bool> has_narrow_materials;  // once asked: are any marked MaterialFlag::narrow?
     double bvh_seconds = 0, bvh_cost = 0;
     uint32_t bvh_depth = 0;
@@ -55,7 +60,8 @@ struct SceneOptions {
     std::filesystem::path shaders;       // folder of shaders instead of the embedded ones
     std::filesystem::path environment;   // image that takes the place of the scene's environment
     std::filesystem::path cache_folder;  // of compiled kernels; empty = none
-    unsigned threads = 0;                // for building; 0 = all
+    ColorMode color = ColorMode::automatic;
+    unsigned threads = 0;        // for building; 0 = all
     uint64_t binding_bytes = 0;  // arrays above this are read by address; 0 = what the device can bind
 };
 
@@ -65,5 +71,10 @@ Scene compile_scene(Device& device, const SceneDescription& description, const S
 // Compiles a kernel for the scene; `buffers` adds to the scene's own, `defines` to the features'.
 Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
                    const std::string& defines = "");
+
+// The same for a kernel that works in colours even where paths carry wavelengths: what it asks does not
+// depend on them.
+Kernel make_color_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
+                         const std::string& defines = "");
 
 }  // namespace etendue

@@ -1,6 +1,6 @@
 // Builds a Scene from its description, step by step; each step needs what the ones before it made. Internal
-// to compile_scene: the steps stand in scene.cpp, scene_materials.cpp, scene_geometry.cpp and
-// scene_lights.cpp.
+// to compile_scene: the steps stand in scene.cpp, scene_spectra.cpp, scene_materials.cpp, scene_geometry.cpp
+// and scene_lights.cpp.
 #pragma once
 #include "host/scene/light_tree.h"
 #include "host/scene/scene.h"
@@ -10,7 +10,7 @@ namespace etendue {
 
 // Twin of struct Material in shaders/lib/materials.glsl; a test compares the layouts.
 struct MaterialRecord {
-    glm::vec4 emission, mean_emission;
+    SpectrumRef emission, mean_emission;
     uint32_t surface, inside, outside, flags, emission_texture, normal_texture;
     float normal_scale;
     uint32_t reserved;
@@ -41,6 +41,12 @@ class SceneCompiler {
     // lane's item.
     void run_once(const std::string& file, uint32_t items, const BufferTable& buffers,
                   std::vector<PushValue> values);
+
+    // scene_spectra.cpp
+    uint32_t add_spectrum(const SpectralValue& value, SpectralKind kind);
+    SpectralValue emitted_spectrum(const EmissionDescription& emission);
+    void scale_emission(MaterialRecord& record, float scale);
+    void choose_color();
 
     // scene_materials.cpp
     void add_materials();
@@ -91,6 +97,7 @@ class SceneCompiler {
     std::vector<TextureUse> textures_;
     std::vector<glm::uvec4> environment_texels_;  // floats, as bits
     std::vector<MaterialRecord> materials_;
+    std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
     World world_;
     uint64_t large_arrays_[6] = {};
     std::vector<uint32_t> lights_;           // RecordRefs

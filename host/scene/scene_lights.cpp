@@ -37,7 +37,7 @@ void SceneCompiler::add_lights() {
     }
     for (uint32_t i = 0; i < world_.world_primitives; ++i) {
         const PrimitiveRecord& p = world_.primitives[i];
-        const glm::vec4 e = materials_[p.material].emission;
+        const glm::vec3 e = materials_[p.material].emission.rgb;
         if (primitive_kind(p) != PrimitiveKind::instance && (e.x > 0 || e.y > 0 || e.z > 0))
             area_primitives_.push_back(i);
     }
@@ -141,11 +141,10 @@ void SceneCompiler::scale_powers(std::vector<LightBounds>& bounds) {
         const auto& e = in_.materials[m].emission;
         if (!e || totals[m] <= 0 || (e->quantity != Quantity::power && e->quantity != Quantity::flux))
             continue;
-        const double wanted =
-            glm::dot(spectral_value(e->value, in_, e->where), glm::vec3(0.2126f, 0.7152f, 0.0722f));
+        const double wanted = glm::dot(spectral_value(e->value, in_, e->where, SpectralKind::radiance).rgb,
+                                       glm::vec3(0.2126f, 0.7152f, 0.0722f));
         scales[m] = float(wanted / totals[m]);
-        materials_[m].emission *= scales[m];
-        materials_[m].mean_emission *= scales[m];
+        scale_emission(materials_[m], scales[m]);
         changed = true;
     }
     if (!changed) return;

@@ -73,24 +73,12 @@ void SceneCompiler::ask_opacity() {
 }
 
 void SceneCompiler::fill_emission(const EmissionDescription& e, MaterialRecord& record) {
-    glm::vec3 value = spectral_value(e.value, in_, e.where);
-    if (!e.spectrum.is_null()) {
-        glm::vec3 spectrum = spectral_value(e.spectrum, in_, e.where + "/spectrum");
-        if (e.quantity != EmissionDescription::Quantity::radiance) {
-            // Photometric quantities and powers fix the scale: the spectrum only gives the colour.
-            const float y = glm::dot(spectrum, glm::vec3(0.2126f, 0.7152f, 0.0722f));
-            if (!(y > 0)) fail_input("{}/spectrum: must not be black", message_place(in_, e.where));
-            spectrum /= y;
-        }
-        value *= spectrum;
-    }
-    if (glm::any(glm::lessThan(value, glm::vec3(0))))
-        fail_input("{}: emission must not be negative", message_place(in_, e.where));
-    record.emission = record.mean_emission = glm::vec4(value, 0);
+    const SpectralValue value = emitted_spectrum(e);
+    if (value.least() < 0) fail_input("{}: emission must not be negative", message_place(in_, e.where));
+    record.emission = record.mean_emission = {value.rgb, add_spectrum(value, SpectralKind::radiance)};
     if (e.texture.is_object()) {
         record.emission_texture = resolver_.texture(e.texture, true, e.where);
-        record.mean_emission *=
-            glm::vec4(mean_color(in_.images[textures_[record.emission_texture].image]), 0);
+        record.mean_emission.rgb *= mean_color(in_.images[textures_[record.emission_texture].image]);
     }
 }
 

@@ -1,6 +1,6 @@
 // MediumOptics: what happens between surfaces. A class NAME defines, for its record R:
 //
-//   float    NAME_ior(R r)                          real refractive index
+//   Spectrum NAME_ior(R r)                          real refractive index
 //   Spectrum NAME_transmittance(R r, float distance)   part that is left after `distance` metres
 //   bool     NAME_is_clear(R r)                     all of it is left, whatever the distance
 //
@@ -11,8 +11,8 @@
 
 #include "generated/medium_classes.glsl"
 
-float medium_ior(uint ref) {
-    float result = 1.0;
+Spectrum medium_spectral_ior(uint ref) {
+    Spectrum result = Spectrum(1);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_ior(name##_record(record_index(ref))); break;
         MEDIUM_CLASSES(CASE)
@@ -20,6 +20,9 @@ float medium_ior(uint ref) {
     }
     return result;
 }
+
+// Of the hero wavelength; colours have one index.
+float medium_ior(uint ref) { return medium_spectral_ior(ref).x; }
 
 Spectrum medium_transmittance(uint ref, float distance) {
     Spectrum result = Spectrum(1);

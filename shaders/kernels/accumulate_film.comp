@@ -16,18 +16,21 @@ void main() {
     if (i < tile_pixels) {
         FilmPixel pixel = film_at(first_pixel + i);
         for (uint s = 0u; s < samples; ++s) {
-            Spectrum radiance = path_states[s * tile_pixels + i].radiance;
-            bool finite = is_finite(radiance);
+#if SPECTRAL
+            batch_pass = s;
+#endif
+            vec3 rgb = spectrum_rgb(path_states[s * tile_pixels + i].radiance);
+            bool finite = is_finite(rgb);
             counters.non_finite += finite ? 0u : 1u;
-            if (!finite) radiance = Spectrum(0);
+            if (!finite) rgb = vec3(0);
 #if HAS_SPLATS
-            radiance += take_splats(first_pixel + i);
+            rgb += take_splats(first_pixel + i);
 #endif
 #if MERGE_VERTICES
-            Spectrum bias = path_states[s * tile_pixels + i].bias;
+            vec3 bias = spectrum_rgb(path_states[s * tile_pixels + i].bias);
             if (is_finite(bias)) add_bias(pixel, bias);
 #endif
-            add_sample(pixel, radiance);
+            add_sample(pixel, rgb);
         }
         film_at(first_pixel + i) = pixel;
     }

@@ -2,7 +2,12 @@
 // rays of which each path has one at most, so no two add to the same.
 // Reads: shadow rays, scene. Writes: radiance of the path states or splats, counters. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
-layout(push_constant) uniform Push { uint counter, first_ray; };  // which count; where the rays start
+layout(push_constant) uniform Push {
+    uint counter, first_ray;  // which count; where the rays start
+#if SPECTRAL && !FORWARD
+    uint tile_pixels;         // slots of a pass
+#endif
+};
 #include "lib/counters.glsl"
 #include "lib/wavefront.glsl"
 #include "stages/trace_shadow.glsl"
@@ -34,6 +39,9 @@ void main() {
 #if HAS_STRAIGHT || HAS_MEDIA || HAS_UNROLLED_TRAVERSAL
     for (; next < count; next += stride) {
         ShadowState s = shadow_rays[first_ray + next];
+#if SPECTRAL && !FORWARD
+        batch_pass = s.target / tile_pixels;
+#endif
         bring(s.target, trace_shadow(shadow_ray_of(s), counters), counters);
     }
 #else

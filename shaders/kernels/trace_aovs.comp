@@ -36,7 +36,7 @@ void main() {
         SurfacePoint p = locate(hit, path.origin, path.direction);
         ScatteringPoint point = scattering_point(p, path.direction, path.medium);
         BsdfSample b = surface_sample(point.surface, point.context, point.wo, sample_3d(path.random));
-        sum.albedo += b.weight;
+        sum.albedo += spectrum_rgb(b.weight);
         sum.normal += point.frame[2];
         sum.depth += hit.t;
         hits += 1.0;

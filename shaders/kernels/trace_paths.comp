@@ -33,9 +33,13 @@ void main() {
     FilmPixel sum;
     if (pixel < pixels) sum = film_at(pixel);
     while (pixel < pixels) {
-        if (!alive)
+        if (!alive) {
+#if SPECTRAL
+            batch_pass = sample_index;
+#endif
             path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height),
                                    first_sample + sample_index, seed);
+        }
         counters.rays++;
         Hit hit = find_hit(path.origin, path.direction, INFINITY);
         ShadowRay shadow;
@@ -51,17 +55,19 @@ void main() {
         path.radiance += trace_shadow(shadow, counters);
 #endif
         if (!alive) {
-            if (!is_finite(path.radiance)) {
+            vec3 rgb = spectrum_rgb(path.radiance);
+            if (!is_finite(rgb)) {
                 counters.non_finite++;
-                path.radiance = Spectrum(0);
+                rgb = vec3(0);
             }
 #if HAS_SPLATS
-            path.radiance += take_splats(pixel);
+            rgb += take_splats(pixel);
 #endif
 #if MERGE_VERTICES
-            if (is_finite(path.bias)) add_bias(sum, path.bias);
+            vec3 bias = spectrum_rgb(path.bias);
+            if (is_finite(bias)) add_bias(sum, bias);
 #endif
-            add_sample(sum, path.radiance);
+            add_sample(sum, rgb);
             if (++sample_index == sample_count) {
                 film_at(pixel) = sum;
                 pixel += lanes;

@@ -1,10 +1,12 @@
 // The vertices of light paths, kept for the camera paths of the same pass. A VertexMap of the host owns the buffers.
 #include "lib/octahedral.glsl"
 
-struct LightVertex {  // 64 bytes
+#include "lib/spectrum.glsl"
+
+struct LightVertex {  // 64 bytes; 68 with wavelengths, of which there are four
     vec3 position;    // m
     float vcm;        // dVCM of Georgiev 2012, "Implementing Vertex Connection and Merging"
-    vec3 throughput;  // relative flux
+    Spectrum throughput;  // relative flux
     float vc;         // dVC there
     vec2 direction;   // towards where the light came from; encode_octahedral
     uint normal;      // geometric; encode_octahedral_16

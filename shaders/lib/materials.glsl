@@ -31,5 +31,5 @@ Spectrum material_mean_emission(uint material) { return spectrum_value(materials
 Spectrum material_emission(uint material, bool front, vec2 uv0, vec2 uv1) {
     if (!front && !material_emits_both_sides(material)) return Spectrum(0);
     return spectrum_value(materials[material].emission) *
-           texture_value(materials[material].emission_texture, uv0, uv1).rgb;
+           factor_of_rgb(texture_value(materials[material].emission_texture, uv0, uv1).rgb);
 }

@@ -67,7 +67,17 @@ const float CONNECTION_SHARE = CONNECT_VERTICES == 1 ? 0.3 : 0.0;
 // the receiver.
 float connects(Path path) { return (path.flags & PATH_STARTS) != 0u ? 1.0 : CONNECTION_SHARE; }
 
-const uint VERTEX_STARTS = 0x20000000u;  // flag of a light vertex: the first of its path
+// Flags of a light vertex.
+const uint VERTEX_STARTS = 0x20000000u;      // the first of its path
+const uint VERTEX_MONOCHROME = 0x40000000u;  // its path carries the hero wavelength only
+
+// Both paths alone would have their hero stand for all wavelengths; joined they do so once.
+float meeting_share(Path path, uint vertex_flags) {
+#if HAS_DISPERSION
+    if ((path.flags & PATH_MONOCHROME) != 0u && (vertex_flags & VERTEX_MONOCHROME) != 0u) return 0.25;
+#endif
+    return 1.0;
+}
 
 #if FORWARD
 // At the first vertex: the density with which it would sample the path's light the way the path came.

@@ -10,6 +10,11 @@
 #include "lib/sampler.glsl"
 #include "lib/spectrum.glsl"
 
+#ifndef HAS_DISPERSION
+#define HAS_DISPERSION 0
+#endif
+#define HAS_PATH_FLAGS (BIDIRECTIONAL || FORWARD_ONLY || HAS_DISPERSION)
+
 struct Path {
     vec3 origin;          // of the ray to trace next
     vec3 direction;       // unit
@@ -29,7 +34,7 @@ struct Path {
     vec3 light_normal;    // of its surface there
 #endif
 #endif
-#if BIDIRECTIONAL || FORWARD_ONLY
+#if HAS_PATH_FLAGS
     uint flags;           // PATH_…
 #endif
 #if FORWARD
@@ -42,7 +47,18 @@ struct Path {
 
 const uint PATH_STARTS = 1u;        // no event yet but passing straight on
 const uint PATH_PARALLEL = 2u;      // started by a receiver of parallel rays
+const uint PATH_MONOCHROME = 8u;   // only the hero wavelength is left
 const uint PATH_AFTER_NARROW = 4u;  // the last event was at a narrow surface
+
+#if HAS_DISPERSION
+// Where wavelengths part the path goes on with the hero alone, which stands for all four (Wilkie et al. 2014, section 3.1, with
+// delta events: the others could not have gone this way). Once: whoever joins two such paths divides by four.
+void make_monochrome(inout Path path) {
+    if ((path.flags & PATH_MONOCHROME) != 0u) return;
+    path.throughput *= Spectrum(4, 0, 0, 0);
+    path.flags |= PATH_MONOCHROME;
+}
+#endif
 
 // A ray that brings `contribution` to the pixel unless something stands in its way.
 struct ShadowRay {

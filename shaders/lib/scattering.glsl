@@ -16,6 +16,9 @@ struct ScatteringPoint {
     uint medium_above;    // media on the side of the normal and below it
     uint medium_below;
     SurfaceContext context;
+#if HAS_DISPERSION
+    bool disperses;       // wavelengths part here
+#endif
 };
 
 // The shading normal, bent by a normal map where there is one.
@@ -55,8 +58,12 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool i
     s.medium_below = separates ? m.inside : medium;
     s.context = SurfaceContext(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
 #if HAS_INTERFACES
-    s.context.ior_above = medium_ior(s.medium_above);
-    s.context.ior_below = medium_ior(s.medium_below);
+    Spectrum above = medium_spectral_ior(s.medium_above), below = medium_spectral_ior(s.medium_below);
+    s.context.ior_above = above.x;
+    s.context.ior_below = below.x;
+#if HAS_DISPERSION
+    s.disperses = separates && (above != Spectrum(above.x) || below != Spectrum(below.x));
+#endif
 #endif
     return s;
 }

@@ -1,17 +1,108 @@
-// A spectral quantity along a ray: one lane per colour channel, linear Rec.709.
-#define Spectrum vec3
+// A spectral quantity along a ray: a lane for each colour channel, linear Rec.709, or (SPECTRAL) for each of the four
+// wavelengths of the pass. All paths of a pass carry the same wavelengths (host/spectra/wavelengths.h), so what a record's
+// spectrum is worth at them is looked up once a pass, by the host.
+#ifndef SPECTRAL
+#define SPECTRAL 0
+#endif
 
-// A spectral parameter of a record, resolved by the host from any spectral value of the scene format.
+// A spectral parameter of a record: filled by the host from any spectral value of the scene format.
 struct SpectrumRef {
-    vec4 data;  // xyz: linear Rec.709; w: reserved for the tabulated spectrum
+    vec3 rgb;    // linear Rec.709
+    uint table;  // of spectrum_values; with TINTED_SPECTRUM rgb is a colour that multiplies it
 };
 
-Spectrum spectrum_value(SpectrumRef ref) { return ref.data.xyz; }
-// Multiplies a parameter by a color, as textures do.
-void scale_spectrum(inout SpectrumRef ref, vec3 color) { ref.data.xyz *= color; }
-
 // CIE luminance Y of linear Rec.709 (ITU-R BT.709-6).
-float luminance(Spectrum s) { return dot(s, vec3(0.2126, 0.7152, 0.0722)); }
+float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
+
+#if SPECTRAL
+
+#define Spectrum vec4
+const uint TINTED_SPECTRUM = 0x80000000u;
+
+// Twin of struct Wavelengths in host/spectra/wavelengths.h.
+struct Wavelengths {
+    vec4 nm;      // the first is the hero, the only one left behind dispersion
+    vec3 rgb[4];  // what a radiance of one contributes to the pixel
+};
+layout(scalar, set = 0) readonly buffer WavelengthTable { Wavelengths wavelengths[]; };  // of each pass of the batch
+layout(scalar, set = 0) readonly buffer SpectrumValues { vec4 spectrum_values[]; };      // SPECTRUM_COUNT of each pass
+
+// The pass that the invocation is at, in the batch.
+uint batch_pass = 0u;
+
+// The colour that a radiance has in the image.
+vec3 spectrum_rgb(Spectrum s) {
+    vec3 rgb = vec3(0);
+    for (uint i = 0u; i < 4u; ++i) rgb += wavelengths[batch_pass].rgb[i] * s[i];
+    return rgb;
+}
+
+float luminance(Spectrum s) { return luminance(spectrum_rgb(s)); }
+// A mean that samplers weigh choices by.
+float brightness(Spectrum s) { return dot(s, vec4(0.25)); }
+float max_component(Spectrum s) { return max(max(s.x, s.y), max(s.z, s.w)); }
+
+// Smooth spectra of colours (Jakob & Hanika 2019; host/spectra/color.h): coefficients on a lattice of the greatest channel,
+// and the ratios of the two others to it.
+layout(scalar, set = 0) readonly buffer ColorSpectra { vec3 color_spectra[]; };
+
+Spectrum factor_of_rgb(vec3 rgb) {
+    float greatest = max(rgb.x, max(rgb.y, rgb.z));
+    if (rgb.x == rgb.y && rgb.y == rgb.z) return Spectrum(greatest);
+    float scale = greatest > 1.0 ? 2.0 * greatest : 1.0;
+    rgb /= scale, greatest /= scale;
+    uint channel = rgb.x == greatest ? 0u : rgb.y == greatest ? 1u : 2u;
+    vec2 ratios = vec2(rgb[(channel + 1u) % 3u], rgb[(channel + 2u) % 3u]) / greatest;
+    const float last = float(COLOR_LATTICE - 1);
+    float level = greatest < 0.5 ? sqrt(0.5 * greatest) : 1.0 - sqrt(0.5 * max(1.0 - greatest, 0.0));  // denser at both ends
+    vec3 at = clamp(vec3(ratios, level) * last, vec3(0), vec3(last));
+    uvec3 cell = min(uvec3(at), uvec3(COLOR_LATTICE - 2));
+    vec3 f = at - vec3(cell);
+    vec3 c = vec3(0);
+    for (uint i = 0u; i < 8u; ++i) {
+        uvec3 corner = uvec3(i & 1u, (i >> 1) & 1u, i >> 2);
+        vec3 part = mix(1.0 - f, f, vec3(corner));
+        uvec3 p = cell + corner;
+        c += part.x * part.y * part.z *
+             color_spectra[((channel * COLOR_LATTICE + p.z) * COLOR_LATTICE + p.y) * COLOR_LATTICE + p.x];
+    }
+    Spectrum t = (wavelengths[batch_pass].nm - 360.0) * (1.0 / 470.0);
+    Spectrum x = (c.x * t + c.y) * t + c.z;
+    return scale * (0.5 + 0.5 * x * inversesqrt(1.0 + x * x));
+}
+
+// Light of a colour, on D65, which is the first of the spectra.
+Spectrum radiance_of_rgb(vec3 rgb) {
+    float scale = 2.0 * max(rgb.x, max(rgb.y, rgb.z));
+    if (!(scale > 0.0)) return Spectrum(0);
+    return spectrum_values[batch_pass * SPECTRUM_COUNT] * scale * factor_of_rgb(rgb / scale);
+}
+
+Spectrum spectrum_value(SpectrumRef ref) {
+    Spectrum value = spectrum_values[batch_pass * SPECTRUM_COUNT + (ref.table & ~TINTED_SPECTRUM)];
+    if ((ref.table & TINTED_SPECTRUM) != 0u) value *= factor_of_rgb(ref.rgb);
+    return value;
+}
+
+// Multiplies a parameter by a color, as textures do.
+void scale_spectrum(inout SpectrumRef ref, vec3 color) {
+#if HAS_TEXTURES || HAS_VERTEX_ATTRIBUTES
+    ref.rgb = (ref.table & TINTED_SPECTRUM) != 0u ? ref.rgb * color : color;
+    ref.table |= TINTED_SPECTRUM;
+#endif
+}
+
+#else
+
+#define Spectrum vec3
+vec3 spectrum_rgb(Spectrum s) { return s; }
+float brightness(Spectrum s) { return luminance(s); }
 float max_component(Spectrum s) { return max(s.x, max(s.y, s.z)); }
-float mean_component(Spectrum s) { return (s.x + s.y + s.z) * (1.0 / 3.0); }
+Spectrum factor_of_rgb(vec3 rgb) { return rgb; }
+Spectrum radiance_of_rgb(vec3 rgb) { return rgb; }
+Spectrum spectrum_value(SpectrumRef ref) { return ref.rgb; }
+void scale_spectrum(inout SpectrumRef ref, vec3 color) { ref.rgb *= color; }
+
+#endif
+
 bool is_black(Spectrum s) { return max_component(s) <= 0.0; }

@@ -29,7 +29,7 @@ struct PathState {
     vec3 light_normal;
 #endif
 #endif
-#if BIDIRECTIONAL || FORWARD_ONLY
+#if HAS_PATH_FLAGS
     uint flags;
 #endif
 #if FORWARD
@@ -101,7 +101,7 @@ void store_path(uint slot, Path path) {
     s.light_normal = path.light_normal;
 #endif
 #endif
-#if BIDIRECTIONAL || FORWARD_ONLY
+#if HAS_PATH_FLAGS
     s.flags = path.flags;
 #endif
 #if FORWARD
@@ -113,6 +113,9 @@ void store_path(uint slot, Path path) {
 }
 
 Path load_path(Batch batch, uint slot) {
+#if SPECTRAL && !FORWARD
+    batch_pass = slot / batch.tile_pixels;
+#endif
     PathState s = path_states[slot];
     vec4 origin = ray_origins[slot];
     Path path;
@@ -136,7 +139,7 @@ Path load_path(Batch batch, uint slot) {
     path.light_normal = s.light_normal;
 #endif
 #endif
-#if BIDIRECTIONAL || FORWARD_ONLY
+#if HAS_PATH_FLAGS
     path.flags = s.flags;
 #endif
 #if FORWARD

@@ -43,7 +43,7 @@ struct EnvironmentCell {
     vec2 at;            // in the cell, [0, 1]²; x along the row, y downwards
 };
 
-void environment_corners(EnvironmentMapRef map, EnvironmentCell cell, out Spectrum corners[4]) {
+void environment_corners(EnvironmentMapRef map, EnvironmentCell cell, out vec3 corners[4]) {
     uint right = cell.column + 1u < map.width ? cell.column + 1u : 0u;
     uint top = map.first + cell.row * map.width, bottom = top + map.width;
     corners[0] = uintBitsToFloat(environment_texel_at(top + cell.column).xyz);
@@ -52,7 +52,7 @@ void environment_corners(EnvironmentMapRef map, EnvironmentCell cell, out Spectr
     corners[3] = uintBitsToFloat(environment_texel_at(bottom + right).xyz);
 }
 
-Spectrum environment_mix(Spectrum corners[4], vec2 at) {
+vec3 environment_mix(vec3 corners[4], vec2 at) {
     return mix(mix(corners[0], corners[1], at.x), mix(corners[2], corners[3], at.x), at.y);
 }
 
@@ -78,9 +78,9 @@ EnvironmentCell environment_locate(EnvironmentMapRef map, float rotation, vec3 d
 }
 
 // Radiance of the image itself, before `scale`.
-Spectrum environment_radiance(ImageEnvironment r, vec3 direction) {
+vec3 environment_radiance(ImageEnvironment r, vec3 direction) {
     EnvironmentCell cell = environment_locate(r.file, r.rotation, direction);
-    Spectrum corners[4];
+    vec3 corners[4];
     environment_corners(r.file, cell, corners);
     return environment_mix(corners, cell.at);
 }
@@ -119,13 +119,13 @@ LightSample image_sample_towards(ImageEnvironment r, vec3 point, vec2 u) {
     float threshold = float(entry >> map.alias_bits) / float((0xFFFFFFFFu >> map.alias_bits) + 1u);
     uint column = choose_alias(uint(cell.x), entry & ((1u << map.alias_bits) - 1u), threshold, v.x);
 
-    Spectrum corners[4];
+    vec3 corners[4];
     environment_corners(map, EnvironmentCell(row, column, vec2(0)), corners);
     vec4 l = vec4(luminance(corners[0]), luminance(corners[1]), luminance(corners[2]), luminance(corners[3]));
     vec2 at;
     at.y = sample_linear(l.x + l.y, l.z + l.w, v.y);
     at.x = sample_linear(mix(l.x, l.z, at.y), mix(l.y, l.w, at.y), v.x);
-    Spectrum radiance = environment_mix(corners, at);
+    vec3 radiance = environment_mix(corners, at);
 
     bool south = 2u * row > map.height;
     vec2 edge = uintBitsToFloat(environment_row(map, row).zw);
@@ -134,12 +134,12 @@ LightSample image_sample_towards(ImageEnvironment r, vec3 point, vec2 u) {
     vec2 around = cos_sin_turns((float(column) + 0.5 + at.x) / float(map.width) - 0.5 - r.rotation * (0.5 * INV_PI)) *
                   sqrt(from_pole * (2.0 - from_pole));
     float pdf = luminance(radiance) / map.integral;
-    return LightSample(vec3(around.y, y, -around.x), INFINITY, radiance * r.scale, pdf, pdf * outer_disk_pdf(scene_bounds()),
+    return LightSample(vec3(around.y, y, -around.x), INFINITY, radiance_of_rgb(radiance * r.scale), pdf, pdf * outer_disk_pdf(scene_bounds()),
                        false);
 }
 
 Spectrum image_radiance(ImageEnvironment r, vec3 direction, LightHit hit) {
-    return environment_radiance(r, direction) * r.scale;
+    return radiance_of_rgb(environment_radiance(r, direction) * r.scale);
 }
 
 float image_pdf_towards(ImageEnvironment r, vec3 point, vec3 direction, LightHit hit) {

@@ -47,6 +47,7 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
 
     float flux = forward_pass.path_flux * float(forward_pass.count) * float(end.y);  // one path and vertex stand for all
     Spectrum contribution = path.throughput * here.value * y.throughput * away.value *
-                            (adjoint_correction(there, light_direction, -direction) * weight * flux / distance_squared);
+                            (adjoint_correction(there, light_direction, -direction) * weight * flux / distance_squared *
+                             meeting_share(path, y.previous));
     return shadow_ray(p, s, direction, distance, contribution);
 }

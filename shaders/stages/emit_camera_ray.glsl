@@ -24,7 +24,7 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.vc = 0.0;
     path.pending = 0.0;
 #endif
-#if BIDIRECTIONAL || FORWARD_ONLY
+#if HAS_PATH_FLAGS
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
 #endif
 #if MERGE_VERTICES

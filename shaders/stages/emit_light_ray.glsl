@@ -23,11 +23,13 @@ Path emit_light_ray(uint index) {
     path.pdf = 0.0;
     path.medium = light_start_medium(light, ray.front);
     path.depth = 0u;
+#if HAS_PATH_FLAGS
+    path.flags = PATH_STARTS;
+#endif
 #if BIDIRECTIONAL
     path.vcm = 1.0 / density;  // times the density of sampling the light, known at the first vertex
     path.vc = ray.is_delta ? 0.0 : 1.0 / density;
     path.pending = 0.0;
-    path.flags = PATH_STARTS;
     path.light = light;
     path.light_normal = ray.normal;
 #endif

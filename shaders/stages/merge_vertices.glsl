@@ -28,6 +28,7 @@ void merge_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMi
         float reverse = pair.pdf_reverse * frame_probability(s, light_direction, -path.direction);
         float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
         Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));
+        brought *= meeting_share(path, y.previous);
         if (2.0 * dot(d, d) < square(radius)) inner += brought;
         else outer += brought;
     }

@@ -43,6 +43,9 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
     ScatteringPoint s = shaded_point(p, path.direction, path.medium, true);
     float flat_part = flat_probability(s, -path.direction);
     if (flat_part > 0.0 && (flat_part >= 1.0 || sample_1d(path.random) < flat_part)) flatten(s, path.direction);
+#if HAS_DISPERSION
+    if (s.disperses) make_monochrome(path);
+#endif
     bool is_delta = surface_is_delta(s.surface, s.context);
     VertexMis mis = vertex_mis(path, p);
 #if CONNECT_VERTICES || MERGE_VERTICES

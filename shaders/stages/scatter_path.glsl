@@ -115,6 +115,9 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
         return false;
     }
     ScatteringPoint s = scattering_point(p, path.direction, path.medium);
+#if HAS_DISPERSION
+    if (s.disperses) make_monochrome(path);
+#endif
     bool is_delta = surface_is_delta(s.surface, s.context);
     VertexMis mis = vertex_mis(path, p);
     // connect_lights, scatter_surfaces
@@ -138,7 +141,7 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
 #endif
 #if FORWARD_ONLY
     if (forward_brings(path) && (event.next.event & EVENT_DELTA) == 0u) return false;
-    if ((event.next.event & EVENT_STRAIGHT) == 0u) path.flags = 0u;
+    if ((event.next.event & EVENT_STRAIGHT) == 0u) path.flags &= ~PATH_STARTS;
 #endif
     if (!follow_sample(path, p, s, event, mis)) return false;
     return continue_path(path, counters);

@@ -18,7 +18,8 @@ void store_vertex(inout Path path, uint path_index, SurfacePoint p, Hit hit, Ver
     v.uv = hit.uv;
     v.primitive = hit.primitive;
     uint starts = (path.flags & PATH_STARTS) != 0u ? VERTEX_STARTS : 0u;
-    v.previous = light_vertex_link(path.vertices.x, starts | (merges ? LIGHT_VERTEX_MERGES : 0u));
+    uint monochrome = (path.flags & PATH_MONOCHROME) != 0u ? VERTEX_MONOCHROME : 0u;
+    v.previous = light_vertex_link(path.vertices.x, starts | monochrome | (merges ? LIGHT_VERTEX_MERGES : 0u));
     uint place = append_light_vertex(v);
     if (place == NO_LIGHT_VERTEX) return;  // the host repeats the pass with fewer paths
 #if MERGE_VERTICES

@@ -55,7 +55,7 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c, float sid
     PrincipledMaterial m;
     float alpha = clamp(r.base_color.a, 0.0, 1.0);
     m.coverage = r.alpha_mode == 0u ? 1.0 : r.alpha_mode == 1u ? (alpha < r.alpha_cutoff ? 0.0 : 1.0) : alpha;
-    m.color = clamp(r.base_color.rgb, Spectrum(0), Spectrum(1));
+    m.color = factor_of_rgb(clamp(r.base_color.rgb, vec3(0), vec3(1)));
     m.metal = clamp(r.metallic, 0.0, 1.0);
     m.transmitter = (1.0 - m.metal) * clamp(r.transmission, 0.0, 1.0);
     m.opaque = max((1.0 - m.metal) - m.transmitter, 0.0);
@@ -101,7 +101,7 @@ void principled_facet(PrincipledMaterial m, float cos_o, out Spectrum reflected,
 
 // Probability of reflection at a facet.
 float principled_reflection_part(Spectrum reflected, Spectrum transmitted) {
-    float r = luminance(reflected), t = luminance(transmitted);
+    float r = brightness(reflected), t = brightness(transmitted);
     return r + t > 0.0 ? r / (r + t) : 1.0;
 }
 
@@ -130,11 +130,11 @@ PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
         transmitted = Spectrum(0);
     }
     float average;
-    float straight = luminance(choice.straight);
-    float diffuse = m.coverage * m.opaque * luminance(m.color) * (1.0 - principled_bound(m, mu_o, average));
+    float straight = brightness(choice.straight);
+    float diffuse = m.coverage * m.opaque * brightness(m.color) * (1.0 - principled_bound(m, mu_o, average));
     // Tilted facets reflect more than the level surface would, so they keep a share even where that is
     // nothing.
-    float facets = m.coverage * max(luminance(reflected + transmitted), 0.02);
+    float facets = m.coverage * max(brightness(reflected + transmitted), 0.02);
     float scale = 1.0 / (straight + diffuse + facets);
     choice.straight_probability = straight * scale;
     choice.diffuse_probability = diffuse * scale;
