@@ -6,6 +6,7 @@
 
 #include "host/image/exr.h"
 #include "host/scene/gltf.h"
+#include "host/spectra/color.h"
 #include "tests/support/render_probe.h"
 
 using namespace etendue;
@@ -14,7 +15,8 @@ namespace {
 
 struct Reference {
     std::string name;
-    double relmse;  // residual noise of the reference, as its page states it
+    double relmse;     // residual noise of the reference, as its page states it
+    double scale = 1;  // of our unit to that of the reference
 };
 
 struct Result {
@@ -49,7 +51,7 @@ std::optional<Result> compare_with(const Reference& reference, uint32_t passes, 
     double mean = 0;
     for (int c = 0; c < 3; ++c) {
         const auto channel = plane(expected, size_t(find_channel(expected, std::string(1, "RGB"[c]))));
-        for (size_t i = 0; i < channel.size(); ++i) values[3 * i + size_t(c)] = channel[i];
+        for (size_t i = 0; i < channel.size(); ++i) values[3 * i + size_t(c)] = reference.scale * channel[i];
     }
     for (const double v : values) mean += v / double(values.size());
     for (size_t i = 0; i < values.size(); ++i)
@@ -94,10 +96,15 @@ void check_mean(const Reference& reference, uint32_t passes, uint32_t seeds, dou
 
 const Reference cornell = {"cornell_rgb", 4.4e-4}, plates = {"veach_mis", 2.0e-4},
                 furnace = {"furnace", 1.9e-5};
+// Its unit of spectral radiance is that of an even spectrum of luminance 1.
+const Reference spectral_cornell = {"cornell_spectral", 1.1e-3, even_luminance()};
 
 }  // namespace
 
 TEST_CASE("the Cornell box looks as its reference") { check_reference(cornell, 16, 16); }
+TEST_CASE("the Cornell box with its measured spectra looks as its reference") {
+    check_reference(spectral_cornell, 16, 16);
+}
 TEST_CASE("glossy plates under lights of all sizes look as their reference") {
     check_reference(plates, 128, 16);
 }

@@ -128,9 +128,7 @@ void SceneBuilder::mesh(const std::vector<glm::vec3>& positions, const std::vect
     mesh_copy(place);
 }
 
-void SceneBuilder::mesh_copy(const Place& place) {
-    node({{"mesh", document["meshes"].size() - 1}}, place);
-}
+void SceneBuilder::mesh_copy(const Place& place) { node({{"mesh", document["meshes"].size() - 1}}, place); }
 
 void SceneBuilder::orthographic(double ymag, const Place& place, const std::string& name) {
     document["cameras"].push_back(
