@@ -14,7 +14,7 @@
 #include "host/image/image.h"
 #include "host/render/film.h"
 #include "host/render/modes.h"
-#include "host/render/spectral_pass.h"
+#include "host/render/spectral_passes.h"
 #include "host/scene/scene.h"
 
 namespace etendue {

@@ -95,6 +95,9 @@ TEST_CASE("lights, metals and paints have the colours that their spectra have") 
             CHECK(std::fabs(e.at(i, 0, c) - row[i].color[c]) < 0.008 * y);
         }
     }
+    // More passes than the device is told of at once, in one batch or two, in one kernel or several.
+    const FilmState fused = render_film(compiled, plan, Schedule::fused, {150});
+    CHECK(render_film(compiled, plan, Schedule::wavefront, {50, 100}).pixels == fused.pixels);
 }
 
 // A ray meets the first face of a prism so that yellow light (the d line) goes through symmetrically, which
@@ -144,6 +147,7 @@ TEST_CASE("a prism of BK7 turns each line by its angle") {
         scene.orthographic(2e-5, at(0, 0, 0.1));
         RenderPlan plan;
         plan.width = plan.height = 2, plan.passes = 16384, plan.seeds = 2;
+        plan.schedule = placed.nm == emitted.nm ? Schedule::fused : Schedule::wavefront;
         Scene compiled = compile_test_scene(scene.import());
         REQUIRE(compiled.features.dispersion);
         const WindowMean seen = window_mean(render_estimates(compiled, plan));

@@ -1,4 +1,4 @@
-#include "host/render/spectral_pass.h"
+#include "host/render/spectral_passes.h"
 
 #include "host/spectra/color.h"
 #include "host/spectra/wavelengths.h"
