@@ -68,7 +68,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
                      "Memory for vertices of forward paths; a pass that needs more is split (default: 256)")
         ->option_text("MIB");
     render->add_option("--color", arguments.color, "What a ray carries (default: auto)")
-        ->option_text("auto|rgb");
+        ->option_text("auto|rgb|spectral");
     render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
         ->option_text("auto|off");
     render

@@ -1,6 +1,7 @@
 // Whether a light is compact, one lane a light: asked of the classes by sampling it from points in the scene. The solid angle
 // under which it is seen is the reciprocal of its mean density; lights that share the power share an angle. Backward rays that
-// leave a surface by chance, or by its law of reflection, seldom find a compact light.
+// leave a surface by chance, or by its law of reflection, seldom find a compact light. One that none of the points sees sends a
+// narrow beam.
 // Reads: lights. Writes: one word a light. Barrier expected: after the dispatch.
 #include "interfaces/light_source.glsl"
 #include "lib/light_emission.glsl"
@@ -29,5 +30,5 @@ void main() {
         views += 1.0;
     }
     float share = emitter_probability(i);
-    light_is_compact[i] = share > 0.0 && (is_delta || views < density * COMPACT_ANGLE * share) ? 1u : 0u;
+    light_is_compact[i] = share > 0.0 && (is_delta || views <= density * COMPACT_ANGLE * share) ? 1u : 0u;
 }

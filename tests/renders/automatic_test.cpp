@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "host/render/automatic.h"
+#include "host/render/techniques.h"
 #include "tests/support/render_probe.h"
 
 using namespace etendue;
@@ -52,6 +53,16 @@ TEST_CASE("automatic: light from everywhere needs no forward rays") {
     const AlgorithmChoice choice = choice_for(scene.import());
     CHECK(choice.algorithm == Algorithm::backward);
     CHECK(choice.reason == "no light is compact");
+}
+
+TEST_CASE("automatic: a beam that few points are lit by is compact") {
+    SceneBuilder scene;
+    scene.rectangle(4, 4, scene.lambertian(0.6), at(0, 0, 0));
+    scene.environment(0.01);
+    scene.light({{"type", "spot"}, {"intensity", 1e6}, {"spot", {{"outerConeAngle", 0.005}}}}, at(0, 0, 2));
+    scene.perspective(0.8, at(0, 0, 3));
+    Scene compiled = compile_test_scene(scene.import());
+    CHECK(has_compact_light(test_device(), compiled));
 }
 
 TEST_CASE("automatic: without light there is nothing to trace forward") {
