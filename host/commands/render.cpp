@@ -32,6 +32,8 @@ uint64_t scene_hash(const Scene& scene) {
     for (const auto& [name, buffer] : scene.buffers)
         if (name != "LargeArrays")  // addresses, which differ from run to run
             hash = hash_bytes(buffer.read_array<std::byte>(buffer.bytes()), hash);
+    for (const SpectralTable& spectrum : scene.spectra)
+        hash = hash_bytes(std::as_bytes(std::span(spectrum.values)), hash);
     for (const auto& [name, text] : scene.sources.generated)
         hash = hash_bytes(std::as_bytes(std::span(text)), hash);
     return hash;

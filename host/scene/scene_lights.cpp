@@ -6,6 +6,7 @@
 #include "host/scene/emission_choice.h"
 #include "host/scene/emission_texture.h"
 #include "host/scene/scene_compiler.h"
+#include "host/spectra/color.h"
 
 namespace etendue {
 namespace {
@@ -141,8 +142,8 @@ void SceneCompiler::scale_powers(std::vector<LightBounds>& bounds) {
         const auto& e = in_.materials[m].emission;
         if (!e || totals[m] <= 0 || (e->quantity != Quantity::power && e->quantity != Quantity::flux))
             continue;
-        const double wanted = glm::dot(spectral_value(e->value, in_, e->where, SpectralKind::radiance).rgb,
-                                       glm::vec3(0.2126f, 0.7152f, 0.0722f));
+        const double wanted =
+            luminance(glm::dvec3(spectral_value(e->value, in_, e->where, SpectralKind::radiance).rgb));
         scales[m] = float(wanted / totals[m]);
         scale_emission(materials_[m], scales[m]);
         changed = true;

@@ -4,13 +4,6 @@
 #include "host/spectra/color.h"
 
 namespace etendue {
-namespace {
-
-double luminance(const glm::vec3& rgb) {
-    return glm::dot(glm::dvec3(rgb), glm::dvec3(0.2126, 0.7152, 0.0722));
-}
-
-}  // namespace
 
 uint32_t SceneCompiler::add_spectrum(const SpectralValue& value, SpectralKind kind) {
     for (uint32_t i = 0; i < spectra_.size() && i < 64; ++i)  // what many share is likely among the first
@@ -33,7 +26,8 @@ SpectralValue SceneCompiler::emitted_spectrum(const EmissionDescription& e) {
     SpectralValue spectrum = spectral_value(e.spectrum, in_, e.where + "/spectrum", SpectralKind::radiance);
     double scale = 1;
     if (e.quantity != Quantity::radiance) {
-        const double y = spectrum.table ? xyz_of_radiance(*spectrum.table).y : luminance(spectrum.rgb);
+        const double y =
+            spectrum.table ? xyz_of_radiance(*spectrum.table).y : luminance(glm::dvec3(spectrum.rgb));
         if (!(y > 0)) fail_input("{}/spectrum: must not be black", message_place(in_, e.where));
         scale = 1 / y;
     }

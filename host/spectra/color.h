@@ -12,6 +12,8 @@ namespace etendue {
 glm::dvec3 xyz_of_radiance(const SpectralTable& radiance);
 // The same as the renderer's unit of colour, in which white of luminance 1 cd/m² is (1, 1, 1).
 glm::dvec3 rgb_of_radiance(const SpectralTable& radiance);
+// CIE luminance Y of linear Rec.709.
+double luminance(const glm::dvec3& rgb);
 // What a wavelength contributes to that: rgb_of_radiance is the sum over nanometres of radiance times this.
 const std::array<glm::dvec3, spectrum_samples>& rgb_weights();
 // D65 of luminance 1 cd/m².
