@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/scene/gltf_import.h"
+#include "host/spectra/spectrum.h"
 
 namespace etendue {
 namespace {
@@ -32,6 +33,11 @@ double material_ior(const JsonAt& material) {
     return ior;
 }
 
+double material_dispersion(const JsonAt& material) {
+    std::optional<JsonAt> extension = find_extension(material, "KHR_materials_dispersion");
+    return extension ? number(*extension, "dispersion", 0, 0, 1e3) : 0.0;
+}
+
 // The parameters of class `principled`, as glTF 2.0, section 3.9 and its appendix B name the quantities.
 json principled_parameters(GltfImport& import, const JsonAt& material) {
     json p = json::object();
@@ -53,9 +59,21 @@ json principled_parameters(GltfImport& import, const JsonAt& material) {
     return p;
 }
 
+// Of KHR_materials_dispersion: 20 / V_d, V_d the Abbe number. Its section "Overview" gives the formula, λ in
+// nm; `ior` is that at 587.6 nm.
+json dispersive_ior(double ior, double dispersion) {
+    json wavelengths = json::array(), values = json::array();
+    for (int nm = first_nm; nm <= last_nm; ++nm) {
+        const double slope = (ior - 1) * dispersion / 20;
+        wavelengths.push_back(nm);
+        values.push_back(std::max(ior + slope * (523655.0 / (double(nm) * nm) - 1.5168), 1.0));
+    }
+    return {{"wavelengths", wavelengths}, {"values", values}};
+}
+
 // The medium of a volume: Beer-Lambert with attenuationColor left after attenuationDistance
 // (KHR_materials_volume).
-json volume_parameters(const JsonAt& volume, double ior) {
+json volume_parameters(const JsonAt& volume, double ior, double dispersion) {
     std::vector<double> color = numbers(volume, "attenuationColor", {1, 1, 1}, 0, 1);
     json absorption = 0.0;
     if (std::optional<JsonAt> distance = find(volume, "attenuationDistance")) {
@@ -65,7 +83,9 @@ json volume_parameters(const JsonAt& volume, double ior) {
         for (double c : color) absorption.push_back(std::fabs(std::log(std::max(c, 1e-9)) / d));
     }
     // An ior of 0 stands for a dielectric that reflects everything: no light comes in, any medium will do.
-    return {{"ior", ior == 0 ? 1.0 : ior}, {"absorption", absorption}};
+    json medium = {{"ior", ior == 0 ? 1.0 : ior}, {"absorption", absorption}};
+    if (dispersion > 0 && ior > 1) medium["ior"] = dispersive_ior(ior, dispersion);
+    return medium;
 }
 
 void add_medium(GltfImport& import, MaterialDescription& material, const JsonAt& at, json parameters) {
@@ -113,7 +133,8 @@ MaterialDescription read_material(GltfImport& import, size_t i) {
         std::optional<JsonAt> volume = find_extension(at, "KHR_materials_volume");
         bool thick = volume && number(*volume, "thicknessFactor", 0, 0, max_coordinate) > 0;
         if (thick && !media_named)
-            add_medium(import, material, at, volume_parameters(*volume, parameters["ior"].get<double>()));
+            add_medium(import, material, at,
+                       volume_parameters(*volume, parameters["ior"].get<double>(), material_dispersion(at)));
         else if (!thick && parameters.contains("transmission"))
             parameters["thin"] = true;
     }

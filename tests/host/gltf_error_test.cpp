@@ -174,6 +174,13 @@ const Fault faults[] = {
      }},
     {"/materials/0/extensions/KHR_materials_ior/ior: is 0.5; must be 0, or at least 1",
      [](json& d) { d["materials"][0]["extensions"]["KHR_materials_ior"]["ior"] = 0.5; }},
+    {"/materials/0/extensions/KHR_materials_dispersion/dispersion: is -1; must be from 0",
+     [](json& d) {
+         json& extensions = d["materials"][0]["extensions"];
+         extensions["KHR_materials_transmission"]["transmissionFactor"] = 1;
+         extensions["KHR_materials_volume"]["thicknessFactor"] = 1;
+         extensions["KHR_materials_dispersion"]["dispersion"] = -1;
+     }},
     {"/materials/1/extensions/ETD_optics/inside: there is no medium 'mist'",
      [](json& d) { d["materials"][1]["extensions"]["ETD_optics"]["inside"] = "mist"; }},
     {"/materials/1/extensions/ETD_optics/surface: has no \"class\"",

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "host/scene/spectral_value.h"
 #include "tests/host/gltf_scene_builder.h"
 
 using namespace etendue;
@@ -134,6 +135,29 @@ TEST_CASE("a volume with thickness becomes a medium inside") {
     CHECK(absorption[2].get<double>() == doctest::Approx(std::log(4.0) / 2));
     CHECK(s.materials[0].surface.parameters["transmission"] == 1.0);
     CHECK(!s.materials[0].surface.parameters.contains("thin"));
+}
+
+TEST_CASE("dispersion gives the medium of a volume an index of that Abbe number") {
+    const auto medium = [](json material_extensions) {
+        material_extensions["KHR_materials_transmission"] = {{"transmissionFactor", 1}};
+        SceneDescription s = with_material({{"extensions", material_extensions}}).import();
+        const json ior = s.media.empty() ? json() : s.media.at(0).medium.parameters["ior"];
+        return ior.is_object() ? spectral_value(ior, s, "", SpectralKind::index) : SpectralValue{};
+    };
+    const json volume = {{"thicknessFactor", 1}};
+    const SpectralValue flint = medium({{"KHR_materials_ior", {{"ior", 1.6}}},
+                                        {"KHR_materials_dispersion", {{"dispersion", 20 / 35.0}}},
+                                        {"KHR_materials_volume", volume}});
+    REQUIRE(flint.table);
+    CHECK(flint.table->at(587.6) == doctest::Approx(1.6).epsilon(2e-5));
+    CHECK(0.6 / (flint.table->at(486.1) - flint.table->at(656.3)) == doctest::Approx(35).epsilon(1e-3));
+    const SpectralValue extreme =
+        medium({{"KHR_materials_dispersion", {{"dispersion", 1000}}}, {"KHR_materials_volume", volume}});
+    REQUIRE(extreme.table);
+    CHECK(extreme.table->least() == 1);
+    CHECK(
+        !medium({{"KHR_materials_dispersion", {{"dispersion", 0}}}, {"KHR_materials_volume", volume}}).table);
+    CHECK(!medium({{"KHR_materials_dispersion", {{"dispersion", 1}}}}).table);  // thin: nothing refracts
 }
 
 TEST_CASE("transmission without a volume is thin-walled") {
