@@ -35,7 +35,8 @@
     X(4, ThinDielectric, thin_dielectric) \
     X(5, Absorber, absorber)           \
     X(6, Boundary, boundary)           \
-    X(7, Principled, principled)
+    X(7, Principled, principled)       \
+    X(8, DiffuseTransmitter, diffuse_transmitter)
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)              \

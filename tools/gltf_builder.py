@@ -53,9 +53,10 @@ class Gltf:
         return self._material({"name": name, "extensions": {"ETD_optics": optics}})
 
     def principled(
-        self, name, color, metallic=0.0, roughness=0.5, transmission=None, ior=None, attenuation=None
+        self, name, color, metallic=0.0, roughness=0.5, transmission=None, ior=None, attenuation=None, **more
     ):
-        """glTF's own material. `attenuation`: (color, distance in m) of the glass inside."""
+        """glTF's own material. `attenuation`: (color, distance in m) of the glass inside; `more`: members of
+        KHR_materials_NAME by NAME."""
         pbr = {"baseColorFactor": [*color, 1], "metallicFactor": metallic, "roughnessFactor": roughness}
         extensions = {}
         if transmission is not None:
@@ -66,6 +67,7 @@ class Gltf:
             extensions["KHR_materials_volume"] = volume
         if ior is not None:
             extensions["KHR_materials_ior"] = {"ior": ior}
+        extensions |= {f"KHR_materials_{key}": members for key, members in more.items()}
         self.extensions |= set(extensions)
         material = {"name": name, "pbrMetallicRoughness": pbr}
         return self._material(material | ({"extensions": extensions} if extensions else {}))

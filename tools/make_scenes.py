@@ -340,6 +340,60 @@ def materials():
     return s
 
 
+def finishes():
+    s = Gltf(
+        "finishes",
+        "What lies on surfaces, plain (back row) and finished (front row), from the left: red paint under a clear coat, which"
+        " mirrors the lamps sharply; brushed steel, whose highlight is drawn out along the parallels; velvet with a bright"
+        " rim at grazing angles; resin with a golden reflection; a paper globe that passes on three quarters of the diffuse"
+        " light, with a lamp inside.",
+    )
+    s.environment = {"class": "constant", "radiance": [0.22, 0.23, 0.26]}
+    floor = s.surface("floor", "lambertian", reflectance=0.35)
+    backdrop(s, floor, 20, 8, -4.5, 7, 2)
+    lamp = s.emitter("lamp", 7, (1, 0.95, 0.88))
+    s.shape("lamp", "rectangle", lamp, matrix=facing([-2.5, 5, 2.5], [0.45, -1, -0.5]), size=[4, 2])
+    s.shape("strip", "rectangle", lamp, matrix=facing([5.5, 2.5, 3], [-1, -0.3, -0.6]), size=[0.7, 4])
+    paint, steel, cloth, resin = [0.42, 0.02, 0.02], [0.62, 0.61, 0.60], [0.10, 0.02, 0.16], [0.05, 0.05, 0.06]
+    paper = [0.85, 0.80, 0.70]
+    rows = (
+        (
+            s.principled("paint", paint, 0, 0.6),
+            s.principled("steel", steel, 1, 0.35),
+            s.principled("cloth", cloth, 0, 1),
+            s.principled("resin", resin, 0, 0.35),
+            s.principled("card", paper, 0, 1),
+        ),
+        (
+            s.principled("coated paint", paint, 0, 0.6, clearcoat={"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.05}),
+            s.principled("brushed steel", steel, 1, 0.35, anisotropy={"anisotropyStrength": 0.8}),
+            s.principled(
+                "velvet", cloth, 0, 1, sheen={"sheenColorFactor": [0.75, 0.55, 0.95], "sheenRoughnessFactor": 0.45}
+            ),
+            s.principled("gilded resin", resin, 0, 0.35, specular={"specularColorFactor": [12, 8, 3]}),
+            s.principled(
+                "paper",
+                paper,
+                0,
+                1,
+                diffuse_transmission={
+                    "diffuseTransmissionFactor": 0.75,
+                    "diffuseTransmissionColorFactor": [0.95, 0.86, 0.66],
+                },
+            ),
+        ),
+    )
+    upright = facing([0, 0, 0], [0, 1, 0], (0, 0, -1))
+    for row, kinds in enumerate(rows):
+        for i, kind in enumerate(kinds):
+            x, z = 1.15 * (i - 2), -0.35 + 1.5 * row
+            s.shape(s.materials[kind]["name"], "sphere", kind, matrix=upright[:12] + [x, 0.46, z, 1], radius=0.46)
+    bulb = s.emitter("bulb", 8, (1, 0.8, 0.55))
+    s.shape("bulb", "sphere", bulb, [2.3, 0.46, 1.15], radius=0.12)
+    s.camera([0, 4.2, 9.0], [0, 0.28, 0.3], 23, 1.8)
+    return s
+
+
 def many_lights():
     s = Gltf("many_lights", "")
     floor = s.surface("floor", "lambertian", reflectance=[0.62, 0.60, 0.57])
@@ -490,6 +544,7 @@ SCENES = [
     spheres,
     lamps,
     materials,
+    finishes,
     many_lights,
     furnace_smooth,
     furnace_rough,

@@ -227,7 +227,7 @@ void ClassRegistry::reflect(ClassInfo& info) const {
 }
 
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
-                         const std::map<std::string, std::string>& constants) {
+                         const std::map<std::string, ClassConstants>& constants) {
     // A kernel for one class of surfaces sets ONLY_SURFACE_CLASS to its tag: the dispatch then has one case.
     // ALL_SURFACE_CLASSES are those of the surfaces that it meets besides.
     std::string text, all = fmt::format("#define {}(X)", interface.table), rows;
@@ -244,14 +244,16 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
     text += split ? fmt::format("#define ALL_{}(X){}\n#else\n{}\n#endif\n", interface.table, rows, all) : all;
     text += '\n';
     for (const ClassInfo* info : classes) {
+        const auto known = constants.find(info->name);
+        if (known != constants.end()) text += known->second.macros;
         text += fmt::format("#include \"{}\"\n", info->file);
         // All classes of an interface are views of one buffer, on one binding.
         text += fmt::format(
             "layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {} {}_records[]; }};\n",
             int(interface.interface), interface.buffer, info->name, info->record, info->name);
-        const auto known = constants.find(info->name);
-        text += fmt::format("{0} {1}_record(uint index) {{ {0} r = {1}_records[index]; {2}return r; }}\n",
-                            info->record, info->name, known == constants.end() ? "" : known->second);
+        text +=
+            fmt::format("{0} {1}_record(uint index) {{ {0} r = {1}_records[index]; {2}return r; }}\n",
+                        info->record, info->name, known == constants.end() ? "" : known->second.statements);
     }
     return text;
 }

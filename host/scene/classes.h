@@ -83,10 +83,13 @@ class ClassRegistry {
 };
 
 // Text of "generated/NAME_classes.glsl" for the given classes: the dispatch table, the class files, their
-// buffers, and for each class a function NAME_record(index). `constants` gives, by class, GLSL statements
-// that set members of a record `r` to what they are in every record of the scene, so that the compiler drops
-// what they switch off.
+// buffers, and for each class a function NAME_record(index). `constants` gives, by class, what is the same in
+// all its records, so that the compiler drops what that switches off.
+struct ClassConstants {
+    std::string statements;  // set members of a record `r`
+    std::string macros;      // ABSENT_NAME_MEMBER of every number that is 0
+};
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
-                         const std::map<std::string, std::string>& constants = {});
+                         const std::map<std::string, ClassConstants>& constants = {});
 
 }  // namespace etendue

@@ -20,19 +20,18 @@ const char* const modelled_extensions[] = {"ETD_optics",
                                            "KHR_materials_transmission",
                                            "KHR_materials_volume",
                                            "KHR_materials_dispersion",
+                                           "KHR_materials_specular",
+                                           "KHR_materials_clearcoat",
+                                           "KHR_materials_sheen",
+                                           "KHR_materials_anisotropy",
+                                           "KHR_materials_diffuse_transmission",
                                            "KHR_lights_punctual",
                                            "KHR_texture_transform",
                                            "KHR_mesh_quantization",
                                            "EXT_mesh_gpu_instancing"};
 
 // Part of the scene format, so a scene may require them; for now they are read past, with a warning.
-const char* const planned_extensions[] = {"KHR_materials_specular",
-                                          "KHR_materials_clearcoat",
-                                          "KHR_materials_sheen",
-                                          "KHR_materials_anisotropy",
-                                          "KHR_materials_iridescence",
-                                          "KHR_materials_unlit",
-                                          "KHR_materials_diffuse_transmission",
+const char* const planned_extensions[] = {"KHR_materials_iridescence", "KHR_materials_unlit",
                                           "EXT_lights_ies"};
 
 bool is_among(std::span<const char* const> names, const std::string& name) {

@@ -38,6 +38,71 @@ double material_dispersion(const JsonAt& material) {
     return extension ? number(*extension, "dispersion", 0, 0, 1e3) : 0.0;
 }
 
+// Names of an extension's members and of the parameters of class `principled` that they become; all have that
+// class's ranges and defaults.
+struct ExtensionMember {
+    enum Kind { factor, color, angle, texture } kind;
+    const char *member, *parameter;
+};
+struct MaterialExtension {
+    const char* name;
+    std::vector<ExtensionMember> members;
+};
+
+const std::vector<MaterialExtension>& surface_extensions() {
+    using M = ExtensionMember;
+    static const std::vector<MaterialExtension> result = {
+        {"KHR_materials_specular",
+         {{M::factor, "specularFactor", "specular"},
+          {M::texture, "specularTexture", "specular_texture"},
+          {M::color, "specularColorFactor", "specular_color"},
+          {M::texture, "specularColorTexture", "specular_color_texture"}}},
+        {"KHR_materials_anisotropy",
+         {{M::factor, "anisotropyStrength", "anisotropy"},
+          {M::angle, "anisotropyRotation", "anisotropy_rotation"},
+          {M::texture, "anisotropyTexture", "anisotropy_texture"}}},
+        {"KHR_materials_diffuse_transmission",
+         {{M::factor, "diffuseTransmissionFactor", "diffuse_transmission"},
+          {M::texture, "diffuseTransmissionTexture", "diffuse_transmission_texture"},
+          {M::color, "diffuseTransmissionColorFactor", "diffuse_transmission_color"},
+          {M::texture, "diffuseTransmissionColorTexture", "diffuse_transmission_color_texture"}}},
+        {"KHR_materials_clearcoat",
+         {{M::factor, "clearcoatFactor", "clearcoat"},
+          {M::texture, "clearcoatTexture", "clearcoat_texture"},
+          {M::factor, "clearcoatRoughnessFactor", "clearcoat_roughness"},
+          {M::texture, "clearcoatRoughnessTexture", "clearcoat_roughness_texture"}}},
+        {"KHR_materials_sheen",
+         {{M::color, "sheenColorFactor", "sheen_color"},
+          {M::texture, "sheenColorTexture", "sheen_color_texture"},
+          {M::factor, "sheenRoughnessFactor", "sheen_roughness"},
+          {M::texture, "sheenRoughnessTexture", "sheen_roughness_texture"}}}};
+    return result;
+}
+
+void read_surface_extensions(GltfImport& import, const JsonAt& material, json& parameters) {
+    for (const MaterialExtension& e : surface_extensions()) {
+        std::optional<JsonAt> extension = find_extension(material, e.name);
+        if (!extension) continue;
+        for (const ExtensionMember& m : e.members) {
+            std::optional<JsonAt> at = find(*extension, m.member);
+            if (!at) continue;
+            // Only the color of a reflection may exceed 1: it multiplies a small one.
+            const double most = std::string(m.member) == "specularColorFactor" ? max_coordinate : 1;
+            if (m.kind == ExtensionMember::texture)
+                read_texture(import, *extension, m.member, parameters, m.parameter);
+            else if (m.kind == ExtensionMember::color)
+                parameters[m.parameter] = number_array(*at, 3, 0, most);
+            else if (m.kind == ExtensionMember::angle)
+                parameters[m.parameter] = number_value(*at);
+            else
+                parameters[m.parameter] = number_value(*at, 0, 1);
+        }
+        if (find(*extension, "clearcoatNormalTexture"))
+            warn_once(import, "clearcoatNormalTexture", *extension,
+                      "clearcoatNormalTexture is ignored: a coat has the normals of what it covers");
+    }
+}
+
 // The parameters of class `principled`, as glTF 2.0, section 3.9 and its appendix B name the quantities.
 json principled_parameters(GltfImport& import, const JsonAt& material) {
     json p = json::object();
@@ -56,6 +121,7 @@ json principled_parameters(GltfImport& import, const JsonAt& material) {
         p["transmission"] = number(*transmission, "transmissionFactor", 0, 0, 1);
         read_texture(import, *transmission, "transmissionTexture", p, "transmission_texture");
     }
+    read_surface_extensions(import, material, p);
     return p;
 }
 

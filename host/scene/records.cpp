@@ -151,30 +151,39 @@ void RecordBuffer::layout() {
     }
 }
 
-std::string RecordBuffer::constant_members(const ClassInfo& info) const {
+ClassConstants RecordBuffer::constant_members(const ClassInfo& info) const {
     const auto region = regions_.find(info.name);
-    if (region == regions_.end() || region->second.records.empty()) return "";
+    if (region == regions_.end() || region->second.records.empty()) return {};
     const std::vector<std::byte>& records = region->second.records;
-    std::string text;
+    ClassConstants constants;
     for (const Parameter& p : info.parameters) {
-        const std::string& type = p.member.type;
-        if (!p.from_scene || p.member.size != 4) continue;
+        const std::string &type = p.member.type, &name = p.member.name;
+        const int length = vector_length(type);
+        if (!p.from_scene || (p.member.size != 4 && !length)) continue;
         bool equal = true;
         for (size_t at = info.stride; at < records.size(); at += info.stride)
-            equal = equal && !std::memcmp(&records[at + p.member.offset], &records[p.member.offset], 4);
+            equal = equal &&
+                    !std::memcmp(&records[at + p.member.offset], &records[p.member.offset], p.member.size);
         if (!equal) continue;
-        uint32_t bits;
-        std::memcpy(&bits, &records[p.member.offset], 4);
-        if (type == "TextureRef" && bits == no_record)
-            text += fmt::format("r.{}.index = NO_RECORD; ", p.member.name);
-        else if (p.default_value.is_boolean())
-            text += fmt::format("r.{} = {}; ", p.member.name, bits ? "true" : "false");
-        else if (type == "uint" || type == "int")
-            text += fmt::format("r.{} = {}({}u); ", p.member.name, type, bits);
-        else if (type == "float" && (bits == 0 || bits == 0x3F800000u))
-            text += fmt::format("r.{} = {}; ", p.member.name, bits ? "1.0" : "0.0");
+        uint32_t bits[4];
+        std::memcpy(bits, &records[p.member.offset], p.member.size);
+        constexpr uint32_t one = 0x3F800000u;
+        if (type == "TextureRef" && *bits == no_record) {
+            constants.statements += fmt::format("r.{}.index = NO_RECORD; ", name);
+        } else if (p.default_value.is_boolean()) {
+            constants.statements += fmt::format("r.{} = {}; ", name, *bits ? "true" : "false");
+        } else if (type == "uint" || type == "int") {
+            constants.statements += fmt::format("r.{} = {}({}u); ", name, type, *bits);
+        } else if (type == "float" && (*bits == 0 || *bits == one)) {
+            constants.statements += fmt::format("r.{} = {}; ", name, *bits ? "1.0" : "0.0");
+            if (*bits == 0) constants.macros += fmt::format("#define ABSENT_{}_{}\n", info.name, name);
+        } else if (std::all_of(bits, bits + length, [](uint32_t b) { return b == 0 || b == one; })) {
+            std::string values;
+            for (int i = 0; i < length; ++i) values += bits[i] ? ", 1.0" : ", 0.0";
+            if (length) constants.statements += fmt::format("r.{} = {}({}); ", name, type, values.substr(2));
+        }
     }
-    return text;
+    return constants;
 }
 
 uint32_t RecordBuffer::ref(const ClassInfo& info, uint32_t nth) const {

@@ -52,9 +52,9 @@ class RecordBuffer {
     uint32_t ref(const ClassInfo& info, uint32_t nth) const;
     uint32_t count(const ClassInfo& info) const;
     void layout();
-    // GLSL statements for class_header: switches (whole numbers, truth values, absent textures, numbers that
-    // are 0 or 1) that have the same value in all records of the class.
-    std::string constant_members(const ClassInfo& info) const;
+    // For class_header: switches (whole numbers, truth values, absent textures, numbers that are 0 or 1,
+    // vectors of such numbers) that have the same value in all records of the class.
+    ClassConstants constant_members(const ClassInfo& info) const;
     const std::vector<std::byte>& bytes() const { return bytes_; }
 
   private:

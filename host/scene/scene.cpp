@@ -127,7 +127,7 @@ std::vector<uint32_t> SceneCompiler::references(Interface interface, const std::
 void SceneCompiler::write_headers() {
     for (const InterfaceInfo& interface : all_interfaces()) {
         const auto& classes = out_.classes[interface.interface];
-        std::map<std::string, std::string> constants;
+        std::map<std::string, ClassConstants> constants;
         for (const ClassInfo* info : classes)
             constants[info->name] = records_[interface.interface].constant_members(*info);
         out_.sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] =

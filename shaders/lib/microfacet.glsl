@@ -63,15 +63,20 @@ vec3 refraction_normal(vec3 wo, vec3 wi, float eta) {
     return l2 > 1e-14 ? h * (h.z < 0.0 ? -inversesqrt(l2) : inversesqrt(l2)) : vec3(0, 0, 1);
 }
 
-// Density of refracting into wi at a visible facet, 1/sr: the density of h times eta² |wi·h| / (wo·h + eta
-// wi·h)² (Walter et al. 2007 eq. 17). The root of the denominator is (1 - eta²) / (wo·h + eta |wi·h|) by
-// Snell's law, which does not cancel. f |cos wi| of power transport is this times G1(wi) and the transmitted
-// part.
-float ggx_refraction_pdf(vec3 wo, vec3 wi, vec3 h, float alpha, float eta) {
+// Solid angle of the facet normals over that of the refracted directions: eta² |wi·h| / (wo·h + eta wi·h)² (Walter et
+// al. 2007 eq. 17); 0 where h refracts no light from wo to wi. The root of the denominator is (1 - eta²) / (wo·h + eta
+// |wi·h|) by Snell's law, which does not cancel.
+float refraction_jacobian(vec3 wo, vec3 wi, vec3 h, float eta) {
     float cos_o = dot(wo, h), cos_i = -dot(wi, h);
     if (cos_o <= 0.0 || cos_i <= 0.0 || eta == 1.0) return 0.0;
     float root = (eta - 1.0) * (eta + 1.0) / (cos_o + eta * cos_i);
-    return ggx_visible_d(wo, h, alpha) * eta * eta * cos_i / (root * root);
+    return eta * eta * cos_i / (root * root);
+}
+
+// Density of refracting into wi at a visible facet, 1/sr. f |cos wi| of power transport is this times G1(wi) and the
+// transmitted part.
+float ggx_refraction_pdf(vec3 wo, vec3 wi, vec3 h, float alpha, float eta) {
+    return ggx_visible_d(wo, h, alpha) * refraction_jacobian(wo, wi, h, eta);
 }
 
 // An interface between media so near to each other that refraction turns light by less than floats resolve

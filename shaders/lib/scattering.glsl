@@ -24,7 +24,7 @@ struct ScatteringPoint {
 // The shading normal, bent by a normal map where there is one.
 mat3 shading_frame(SurfacePoint p, Material m) {
     vec3 normal = p.shading_normal;
-#if HAS_VERTEX_ATTRIBUTES
+#if HAS_VERTEX_ATTRIBUTES || defined(SURFACES_HAVE_TANGENTS)
     mat3 frame = frame_along(normal, p.tangent.xyz, p.tangent.w);
 #else
     mat3 frame = frame_around(normal);

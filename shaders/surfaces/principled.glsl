@@ -1,8 +1,8 @@
-// The metallic-roughness material of glTF 2.0 (specification, appendix B) with KHR_materials_ior and
-// KHR_materials_transmission: a mix, by `metallic`, of a metal and a dielectric that is diffuse below (or
-// lets light through, by `transmission`).
+// The metallic-roughness material of glTF 2.0 (specification, appendix B) with KHR_materials_ior, _transmission, _specular,
+// _anisotropy, _diffuse_transmission, _clearcoat and _sheen: a mix, by `metallic`, of a metal and a dielectric that is
+// diffuse below (or lets light through, by `transmission`), under cloth fibres, under a coat of index 1.5.
 //
-// Differences from the appendix, which leaves energy to the implementer:
+// Differences from the appendix and the extensions, which leave energy to the implementer:
 // - The diffuse part is c (1 - D(wo)) (1 - D(wi)) / (pi (1 - D_avg)), where D bounds the albedo of the
 //   specular part from above. So the sum never exceeds 1, and it stays reciprocal; smooth and with c = 1
 //   nothing is lost.
@@ -10,9 +10,11 @@
 // - Not thin (KHR_materials_volume), the transmitting part refracts between the two media as the class
 //   `dielectric` does, tinted by the base color at each transmission. Thin and smooth, light passes straight on.
 //   Rough facets count as smooth where the media match so nearly that refraction is not resolved.
-#include "lib/fresnel.glsl"
-#include "lib/microfacet.glsl"
-
+// - Coat and sheen lie on both sides and scale what is below by min(p(wo), p(wi)), where 1 - p bounds their albedo from
+//   above: KHR_materials_sheen's albedo scaling. What the material emits they leave as it is, and a normal map bends the
+//   coat, too.
+// - Where media differ, diffuse transmission keeps radiance over squared index: of what comes from the denser side
+//   only 1 / n² passes, and the rest is reflected.
 struct Principled {
     vec4 base_color;                        //: [1, 1, 1, 1]. Linear color, alpha; vertex colors multiply it.
     TextureRef base_color_texture;          //: none. Multiplies base_color.
@@ -25,6 +27,25 @@ struct Principled {
     float transmission;                     //: 0 in [0, 1]. Part of the dielectric that is clear.
     TextureRef transmission_texture;        //: none data. Red multiplies transmission.
     bool thin;                              //: false. Transmission does not refract.
+    float specular;                         //: 1 in [0, 1]. Strength of the dielectric's reflection.
+    TextureRef specular_texture;            //: none data. Alpha multiplies specular.
+    vec3 specular_color;                    //: [1, 1, 1] in [0, inf). Multiplies that reflection at normal incidence.
+    TextureRef specular_color_texture;      //: none. Multiplies specular_color.
+    float anisotropy;                       //: 0 in [0, 1]. alpha along the tangent is mix(alpha, 1, anisotropy²).
+    float anisotropy_rotation;              //: 0 rad. Of that direction, from the tangent to the bitangent.
+    TextureRef anisotropy_texture;          //: none data. Red, green: direction in [-1, 1]; blue multiplies anisotropy.
+    float diffuse_transmission;             //: 0 in [0, 1]. Part of the diffuse light that goes through.
+    TextureRef diffuse_transmission_texture;        //: none data. Alpha multiplies diffuse_transmission.
+    vec3 diffuse_transmission_color;                //: [1, 1, 1] in [0, 1]. Linear color of that light.
+    TextureRef diffuse_transmission_color_texture;  //: none. Multiplies diffuse_transmission_color.
+    float clearcoat;                        //: 0 in [0, 1]. Part of the surface that a coat of index 1.5 covers.
+    TextureRef clearcoat_texture;           //: none data. Red multiplies clearcoat.
+    float clearcoat_roughness;              //: 0 in [0, 1]. As roughness.
+    TextureRef clearcoat_roughness_texture; //: none data. Green multiplies clearcoat_roughness.
+    vec3 sheen_color;                       //: [0, 0, 0] in [0, 1]. Linear color of the sheen of fibres.
+    TextureRef sheen_color_texture;         //: none. Multiplies sheen_color.
+    float sheen_roughness;                  //: 0 in [0, 1]. The rim widens with it; below 0.1 it stays the same.
+    TextureRef sheen_roughness_texture;     //: none data. Alpha multiplies sheen_roughness.
 };
 
 Principled principled_resolve(Principled r, SurfaceContext c) {
@@ -33,148 +54,40 @@ Principled principled_resolve(Principled r, SurfaceContext c) {
     r.metallic *= metallic_roughness.b;
     r.roughness *= metallic_roughness.g;
     r.transmission *= texture_value(r.transmission_texture, c.uv0, c.uv1).r;
+    r.specular *= texture_value(r.specular_texture, c.uv0, c.uv1).a;
+    r.specular_color *= texture_value(r.specular_color_texture, c.uv0, c.uv1).rgb;
+    r.diffuse_transmission *= texture_value(r.diffuse_transmission_texture, c.uv0, c.uv1).a;
+    r.diffuse_transmission_color *= texture_value(r.diffuse_transmission_color_texture, c.uv0, c.uv1).rgb;
+    r.clearcoat *= texture_value(r.clearcoat_texture, c.uv0, c.uv1).r;
+    r.clearcoat_roughness *= texture_value(r.clearcoat_roughness_texture, c.uv0, c.uv1).g;
+    r.sheen_color *= texture_value(r.sheen_color_texture, c.uv0, c.uv1).rgb;
+    r.sheen_roughness *= texture_value(r.sheen_roughness_texture, c.uv0, c.uv1).a;
+#ifndef ABSENT_principled_anisotropy
+    if (r.anisotropy_texture.index != NO_RECORD) {
+        vec3 t = texture_value(r.anisotropy_texture, c.uv0, c.uv1).xyz;
+        r.anisotropy *= t.z;
+        r.anisotropy_rotation += atan(2.0 * t.y - 1.0, 2.0 * t.x - 1.0);
+    }
+#endif
     return r;
 }
 
-// The material at a point.
-struct PrincipledMaterial {
-    float coverage;     // 1 - part that passes unscattered because of alpha
-    Spectrum color;
-    float metal;        // parts of the covered surface; their sum is 1: metal,
-    float opaque;       //   dielectric that is diffuse below,
-    float transmitter;  //   dielectric that lets light through
-    bool thin;          // without refraction
-    float f0;           // of the dielectric
-    float alpha;        // GGX width
-    bool smooth_facets; // what the facets reflect and transmit is not scattered
-    float eta;          // index of the medium on the far side over that on the side of wo
-    bool importance;
-};
-
-PrincipledMaterial principled_material(Principled r, SurfaceContext c, float side) {
-    PrincipledMaterial m;
-    float alpha = clamp(r.base_color.a, 0.0, 1.0);
-    m.coverage = r.alpha_mode == 0u ? 1.0 : r.alpha_mode == 1u ? (alpha < r.alpha_cutoff ? 0.0 : 1.0) : alpha;
-    m.color = factor_of_rgb(clamp(r.base_color.rgb, vec3(0), vec3(1)));
-    m.metal = clamp(r.metallic, 0.0, 1.0);
-    m.transmitter = (1.0 - m.metal) * clamp(r.transmission, 0.0, 1.0);
-    m.opaque = max((1.0 - m.metal) - m.transmitter, 0.0);
-    m.thin = r.thin;
-    m.f0 = square((r.ior - 1.0) / (r.ior + 1.0));
-    m.alpha = square(clamp(r.roughness, 0.0, 1.0));
-    m.smooth_facets = m.alpha < SMOOTH_ALPHA || (!m.thin && m.transmitter > 0.0 &&
-                                                 interface_is_smooth(m.alpha, c.ior_above, c.ior_below));
-    m.eta = side < 0.0 ? c.ior_above / c.ior_below : c.ior_below / c.ior_above;
-    m.importance = c.importance;
-    return m;
-}
-
-// D(mu): not less than the albedo of the dielectric's specular part. That albedo is f0 (E - B) + B, where E
-// <= 1 is the albedo of facets that reflect everything and B the same weighted by Schlick's (1 - wo·h)^5. B
-// is less than q (1 - mu)^p + 2e-4, with q and p fitted to B by quadrature.
-float principled_bound(PrincipledMaterial m, float mu, out float average) {
-    float p = 5.0, q = 1.0, tail = 0.0;
-    if (!m.smooth_facets) {
-        p = 2.5 + 2.5 * exp(-6.5 * m.alpha);
-        q = 0.9998 / (1.0 + m.alpha * (3.2147 + m.alpha * (51.812 - m.alpha * 5.0068)));
-        tail = 2e-4;
-    }
-    average = m.f0 + (1.0 - m.f0) * (q * 2.0 / ((p + 1.0) * (p + 2.0)) + tail);
-    return m.f0 + (1.0 - m.f0) * (q * pow(max(1.0 - mu, 1e-7), p) + tail);
-}
-
-// Diffuse f |cos wi|, 1/sr.
-Spectrum principled_diffuse(PrincipledMaterial m, float mu_o, float mu_i) {
-    float average;
-    float o = principled_bound(m, mu_o, average), i = principled_bound(m, mu_i, average);
-    return m.color * (m.opaque * (1.0 - o) * (1.0 - i) * mu_i / (PI * max(1.0 - average, 1e-6)));
-}
-
-// What a facet seen at cos_o reflects and transmits, as power.
-void principled_facet(PrincipledMaterial m, float cos_o, out Spectrum reflected, out Spectrum transmitted) {
-    float s = schlick_weight(cos_o);
-    float f = mix(m.f0, 1.0, s);
-    float f_transmitter = m.thin ? f : fresnel_dielectric(cos_o, m.eta);
-    reflected = m.metal * mix(m.color, Spectrum(1), s) + m.opaque * f + m.transmitter * f_transmitter;
-    transmitted = m.transmitter * (1.0 - f_transmitter) * m.color;
-}
-
-// Probability of reflection at a facet.
-float principled_reflection_part(Spectrum reflected, Spectrum transmitted) {
-    float r = brightness(reflected), t = brightness(transmitted);
-    return r + t > 0.0 ? r / (r + t) : 1.0;
-}
-
-float principled_transmission_scale(PrincipledMaterial m) {
-    return m.thin || m.importance ? 1.0 : 1.0 / (m.eta * m.eta);
-}
-
-// Facets that transmit without changing the direction.
-bool principled_transmits_straight(PrincipledMaterial m) {
-    return m.smooth_facets && (m.thin || m.eta == 1.0);
-}
-
-// `sample` first chooses among what passes straight on, the diffuse part and the facets.
-struct PrincipledChoice {
-    Spectrum straight;                                             // part of the light
-    float straight_probability, diffuse_probability, facet_probability;  // their sum is 1
-};
-
-PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
-    Spectrum reflected, transmitted;
-    principled_facet(m, mu_o, reflected, transmitted);
-    PrincipledChoice choice;
-    choice.straight = Spectrum(1.0 - m.coverage);
-    if (principled_transmits_straight(m)) {
-        choice.straight += m.coverage * transmitted;
-        transmitted = Spectrum(0);
-    }
-    float average;
-    float straight = brightness(choice.straight);
-    float diffuse = m.coverage * m.opaque * brightness(m.color) * (1.0 - principled_bound(m, mu_o, average));
-    // Tilted facets reflect more than the level surface would, so they keep a share even where that is
-    // nothing.
-    float facets = m.coverage * max(brightness(reflected + transmitted), 0.02);
-    float scale = 1.0 / (straight + diffuse + facets);
-    choice.straight_probability = straight * scale;
-    choice.diffuse_probability = diffuse * scale;
-    choice.facet_probability = facets * scale;
-    return choice;
-}
-
-// f |cos wi| and its pdf, for wo above.
-Spectrum principled_evaluate(PrincipledMaterial m, vec3 wo, vec3 wi, out float pdf) {
-    PrincipledChoice choice = principled_choice(m, wo.z);
-    bool reflects = wi.z > 0.0;
-    Spectrum value = reflects ? m.coverage * principled_diffuse(m, wo.z, wi.z) : Spectrum(0);
-    pdf = reflects ? choice.diffuse_probability * INV_PI * wi.z : 0.0;
-    if (m.smooth_facets) return value;
-
-    bool refracts = !reflects && !m.thin;
-    vec3 mirrored = vec3(wi.xy, abs(wi.z));
-    vec3 h = refracts ? refraction_normal(wo, wi, m.eta) : reflection_normal(wo, mirrored);
-    Spectrum reflected, transmitted;
-    principled_facet(m, dot(wo, h), reflected, transmitted);
-    float reflection_part = principled_reflection_part(reflected, transmitted);
-    float facet_pdf = ggx_reflection_pdf(wo, h, m.alpha);
-    if (refracts) facet_pdf = ggx_refraction_pdf(wo, wi, h, m.alpha, m.eta);
-    pdf += choice.facet_probability * facet_pdf * (reflects ? reflection_part : 1.0 - reflection_part);
-    Spectrum part = reflects ? reflected : transmitted * principled_transmission_scale(m);
-    return value + m.coverage * part * (facet_pdf * ggx_g1(mirrored.z, m.alpha));
-}
+#include "lib/principled_lobes.glsl"
 
 Spectrum principled_eval(Principled r, SurfaceContext c, vec3 wo, vec3 wi) {
     float side = wo.z < 0.0 ? -1.0 : 1.0;
     float pdf;
     wo.z *= side, wi.z *= side;
-    return principled_evaluate(principled_material(r, c, side), wo, wi, pdf);
+    PrincipledMaterial m = principled_material(r, c, side);
+    return principled_evaluate(m, principled_turned(m, wo), principled_turned(m, wi), pdf);
 }
 
 float principled_pdf(Principled r, SurfaceContext c, vec3 wo, vec3 wi) {
     float side = wo.z < 0.0 ? -1.0 : 1.0;
     float pdf;
     wo.z *= side, wi.z *= side;
-    principled_evaluate(principled_material(r, c, side), wo, wi, pdf);
+    PrincipledMaterial m = principled_material(r, c, side);
+    principled_evaluate(m, principled_turned(m, wo), principled_turned(m, wi), pdf);
     return pdf;
 }
 
@@ -186,34 +99,44 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     if (u.z < choice.straight_probability)
         return BsdfSample(vec3(-wo.xy, -wo.z * side), choice.straight / choice.straight_probability,
                           choice.straight_probability, EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT);
+    wo = principled_turned(m, wo);
+    // Which part, and where u.z lies within it.
     float rest = u.z - choice.straight_probability;
     bool diffuse = rest < choice.diffuse_probability;
+    bool through = diffuse && rest < choice.diffuse_probability * principled_diffuse_through(m);
+    bool coat = false, sheen = false;
+    if (!diffuse) {
+        rest -= choice.diffuse_probability;
+        coat = rest < choice.coat_probability;
+        sheen = !coat && rest < choice.coat_probability + choice.sheen_probability;
+        rest -= choice.coat_probability + choice.sheen_probability;
+    }
+    bool is_delta = !diffuse && !sheen && (coat ? m.coat_alpha < SMOOTH_ALPHA : m.smooth_facets);
 
-    vec3 h = m.smooth_facets ? vec3(0, 0, 1) : ggx_sample_visible(wo, m.alpha, u.xy);
+    vec3 h = vec3(0, 0, 1);
+    if (!is_delta) h = ggx_sample_visible(wo, coat ? PrincipledWidth(m.coat_alpha) : m.alpha, u.xy);
     float cos_o = dot(wo, h);
     Spectrum reflected, transmitted;
     principled_facet(m, cos_o, reflected, transmitted);
     if (principled_transmits_straight(m)) transmitted = Spectrum(0);
     float reflection_part = principled_reflection_part(reflected, transmitted);
-    bool reflects = diffuse || rest - choice.diffuse_probability < reflection_part * choice.facet_probability;
+    bool reflects = diffuse ? !through : coat || sheen || rest < reflection_part * choice.facet_probability;
     vec3 wi = 2.0 * cos_o * h - wo;
     if (!reflects && m.thin) wi.z = -wi.z;
     if (!reflects && !m.thin) refract_direction(wo, h, cos_o, m.eta, wi);
-    if (diffuse) wi = warp_cosine_hemisphere(u.xy);
+    if (diffuse) wi = warp_cosine_hemisphere(u.xy) * vec3(1, 1, through ? -1 : 1);
+    if (sheen) wi = warp_sphere(vec2(0.5 * u.x, u.y));
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
 
     BsdfSample result;
-    result.event = reflects ? EVENT_REFLECT : EVENT_TRANSMIT;
-    if (m.smooth_facets && !diffuse) {
-        result.event |= EVENT_DELTA;
-        result.pdf = choice.facet_probability * (reflects ? reflection_part : 1.0 - reflection_part);
-        result.weight = m.coverage * (reflects ? reflected : transmitted * principled_transmission_scale(m));
-    } else {
+    result.event = (reflects ? EVENT_REFLECT : EVENT_TRANSMIT) | (is_delta ? EVENT_DELTA : 0u);
+    if (is_delta)
+        result.weight = principled_delta(m, wo, wi, choice, result.pdf);
+    else
         result.weight = principled_evaluate(m, wo, wi, result.pdf);
-    }
     if (!(result.pdf > 0.0)) return no_bsdf_sample();
     result.weight /= result.pdf;
-    result.wi = vec3(wi.xy, wi.z * side);
+    result.wi = principled_turned_back(m, wi) * vec3(1, 1, side);
     return result;
 }
 
@@ -222,9 +145,12 @@ Spectrum principled_transparency(Principled r, SurfaceContext c, vec3 wo) {
 }
 
 bool principled_is_delta(Principled r, SurfaceContext c) {
-    uint textures = r.base_color_texture.index & r.metallic_roughness_texture.index & r.transmission_texture.index;
+    uint textures = r.base_color_texture.index & r.metallic_roughness_texture.index & r.transmission_texture.index &
+                    r.anisotropy_texture.index & r.clearcoat_texture.index & r.clearcoat_roughness_texture.index &
+                    r.sheen_color_texture.index;
     r.base_color *= c.color;
     PrincipledMaterial m = principled_material(r, c, 1.0);
-    return textures == NO_RECORD && (m.coverage == 0.0 || (m.smooth_facets && m.opaque == 0.0));
+    bool has_layers = m.sheen_most > 0.0 || (m.coat > 0.0 && m.coat_alpha >= SMOOTH_ALPHA);
+    return textures == NO_RECORD && (m.coverage == 0.0 || (m.smooth_facets && m.opaque == 0.0 && !has_layers));
 }
 bool principled_is_opaque(Principled r, SurfaceContext c) { return r.alpha_mode == 0u && r.transmission == 0.0; }

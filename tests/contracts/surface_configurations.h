@@ -20,6 +20,8 @@ struct SurfaceConfiguration {
     double width = 1;
 };
 
+std::vector<SurfaceConfiguration> extended_principled();  // principled_extensions_test.cpp
+
 inline std::vector<SurfaceConfiguration> surface_configurations(const std::string& name) {
     using C = SurfaceConfiguration;
     const auto value = [](double r, double g, double b, double a) {
@@ -104,10 +106,23 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
                   0.01}};
     if (name == "thin_dielectric")
         return {C{"pane", nlohmann::json::object(), 1, 1, 1.0}, C{"bubble", {{"ior", 1}}, 1.33f, 1.33f, 1.0}};
+    if (name == "diffuse_transmitter")
+        return {
+            C{"by default", nlohmann::json::object(), 1, 1, 1.0},
+            C{"lossless under water", {{"reflectance", 0.3}, {"transmittance", 0.7}}, 1.33f, 1, 1.0},
+            C{"coloured", {{"reflectance", {0.2, 0.6, 0.1}}, {"transmittance", {0.3, 0.4, 0.0}}}, 1, 1.5f},
+            C{"too bright", {{"reflectance", 0.8}, {"transmittance", 0.7}}, 1, 1, 1.0},
+            C{"textured",
+              {{"reflectance", 1},
+               {"reflectance_texture", value(0.25, 0.25, 0.25, 1)},
+               {"transmittance_texture", value(0.5, 0.5, 0.5, 1)}},
+              1,
+              1,
+              0.5}};
     if (name == "absorber") return {C{"absorber", nlohmann::json::object(), 1, 1, 0.0}};
     if (name == "boundary") return {C{"boundary", nlohmann::json::object(), 1.33f, 1, 1.0}};
-    if (name == "principled")
-        return {
+    if (name == "principled") {
+        std::vector<C> result = {
             C{"white plastic, smooth", {{"metallic", 0}, {"roughness", 0}}, 1, 1, 1.0},
             C{"white plastic, roughness .2", {{"metallic", 0}, {"roughness", 0.2}}},
             C{"plastic, roughness .5",
@@ -152,6 +167,10 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
                {"transmission", 1},
                {"thin", true},
                {"transmission_texture", value(0.5, 0, 0, 1)}}}};
+        const std::vector<C> extended = extended_principled();
+        result.insert(result.end(), extended.begin(), extended.end());
+        return result;
+    }
     return {};
 }
 

@@ -181,6 +181,14 @@ const Fault faults[] = {
          extensions["KHR_materials_volume"]["thicknessFactor"] = 1;
          extensions["KHR_materials_dispersion"]["dispersion"] = -1;
      }},
+    {"/materials/0/extensions/KHR_materials_sheen/sheenColorFactor/1: is 2; must be from 0 to 1",
+     [](json& d) {
+         d["materials"][0]["extensions"]["KHR_materials_sheen"]["sheenColorFactor"] = {0, 2, 0};
+     }},
+    {"/materials/0/extensions/KHR_materials_clearcoat/clearcoatTexture/index: is 4; /textures has",
+     [](json& d) {
+         d["materials"][0]["extensions"]["KHR_materials_clearcoat"]["clearcoatTexture"]["index"] = 4;
+     }},
     {"/materials/1/extensions/ETD_optics/inside: there is no medium 'mist'",
      [](json& d) { d["materials"][1]["extensions"]["ETD_optics"]["inside"] = "mist"; }},
     {"/materials/1/extensions/ETD_optics/surface: has no \"class\"",
@@ -306,16 +314,16 @@ TEST_CASE("a missing file and a folder are refused with their name") {
 
 TEST_CASE("what is read past is one warning for each extension, naming it and its first place") {
     GltfBuilder b = whole_scene();
-    json sheen = {{"extensions", {{"KHR_materials_sheen", json::object()}}}};
-    b.document["materials"] = json::array({sheen, sheen});
+    json unlit = {{"extensions", {{"KHR_materials_unlit", json::object()}}}};
+    b.document["materials"] = json::array({unlit, unlit});
     b.document["nodes"][3].erase("extensions");
-    b.document["extensionsUsed"] = json::array({"KHR_materials_sheen", "FOO_bar", "ETD_optics"});
-    b.document["extensionsRequired"] = json::array({"KHR_materials_sheen"});
+    b.document["extensionsUsed"] = json::array({"KHR_materials_unlit", "FOO_bar", "ETD_optics"});
+    b.document["extensionsRequired"] = json::array({"KHR_materials_unlit"});
     b.document["animations"] = json::array({json::object()});
     SceneDescription s = b.import();
     CHECK(s.warnings.size() == 3);
     CHECK(
-        has_warning(s, "nowhere/scene.glb: /materials/0: KHR_materials_sheen is not modelled yet: ignored"));
+        has_warning(s, "nowhere/scene.glb: /materials/0: KHR_materials_unlit is not modelled yet: ignored"));
     CHECK(has_warning(s, "/extensionsUsed/1: FOO_bar is not modelled yet: ignored"));
     CHECK(has_warning(s, "/animations: animations are not modelled"));
 }

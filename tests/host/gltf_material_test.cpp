@@ -137,6 +137,59 @@ TEST_CASE("a volume with thickness becomes a medium inside") {
     CHECK(!s.materials[0].surface.parameters.contains("thin"));
 }
 
+TEST_CASE("members of the surface extensions become parameters, each with its texture") {
+    GltfBuilder b = with_material({{"extensions",
+                                    {{"KHR_materials_specular",
+                                      {{"specularFactor", 0.5},
+                                       {"specularTexture", {{"index", 0}}},
+                                       {"specularColorFactor", {4, 1, 0}},
+                                       {"specularColorTexture", {{"index", 0}}}}},
+                                     {"KHR_materials_anisotropy",
+                                      {{"anisotropyStrength", 0.6},
+                                       {"anisotropyRotation", -7.5},
+                                       {"anisotropyTexture", {{"index", 0}}}}},
+                                     {"KHR_materials_diffuse_transmission",
+                                      {{"diffuseTransmissionFactor", 0.25},
+                                       {"diffuseTransmissionTexture", {{"index", 0}}},
+                                       {"diffuseTransmissionColorFactor", {0.1, 0.2, 0.3}},
+                                       {"diffuseTransmissionColorTexture", {{"index", 0}}}}},
+                                     {"KHR_materials_clearcoat",
+                                      {{"clearcoatFactor", 0.75},
+                                       {"clearcoatTexture", {{"index", 0}}},
+                                       {"clearcoatRoughnessFactor", 0.3},
+                                       {"clearcoatRoughnessTexture", {{"index", 0}}},
+                                       {"clearcoatNormalTexture", {{"index", 0}}}}},
+                                     {"KHR_materials_sheen",
+                                      {{"sheenColorFactor", {0.5, 0.25, 0}},
+                                       {"sheenColorTexture", {{"index", 0}}},
+                                       {"sheenRoughnessFactor", 0.4},
+                                       {"sheenRoughnessTexture", {{"index", 0}}}}}}}});
+    add_texture(b);
+    const SceneDescription s = b.import();
+    json p = s.materials.at(0).surface.parameters;
+    for (const char* name :
+         {"specular", "specular_color", "anisotropy", "diffuse_transmission", "diffuse_transmission_color",
+          "clearcoat", "clearcoat_roughness", "sheen_color", "sheen_roughness"}) {
+        CAPTURE(name);
+        CHECK(p[std::string(name) + "_texture"] == json{{"index", 0}});
+        p.erase(std::string(name) + "_texture");
+    }
+    for (const char* name : {"base_color", "metallic", "roughness", "alpha_mode", "alpha_cutoff", "ior"})
+        p.erase(name);
+    CHECK(p == json{{"specular", 0.5},
+                    {"specular_color", {4, 1, 0}},
+                    {"anisotropy", 0.6},
+                    {"anisotropy_rotation", -7.5},
+                    {"diffuse_transmission", 0.25},
+                    {"diffuse_transmission_color", {0.1, 0.2, 0.3}},
+                    {"clearcoat", 0.75},
+                    {"clearcoat_roughness", 0.3},
+                    {"sheen_color", {0.5, 0.25, 0}},
+                    {"sheen_roughness", 0.4}});
+    REQUIRE(s.warnings.size() == 1);
+    CHECK(s.warnings[0].find("clearcoatNormalTexture is ignored") != std::string::npos);
+}
+
 TEST_CASE("dispersion gives the medium of a volume an index of that Abbe number") {
     const auto medium = [](json material_extensions) {
         material_extensions["KHR_materials_transmission"] = {{"transmissionFactor", 1}};

@@ -1,0 +1,279 @@
+// The lobes of the class `principled` (surfaces/principled.glsl) at one point of it.
+#include "lib/fresnel.glsl"
+#include "lib/microfacet_anisotropic.glsl"
+#include "lib/sheen.glsl"
+
+// Widths of GGX: one number where no material of the scene is anisotropic.
+#ifdef ABSENT_principled_anisotropy
+#define PrincipledWidth float
+#else
+#define PrincipledWidth vec2
+#define SURFACES_HAVE_TANGENTS  // lib/scattering.glsl: frames follow the surface's tangent
+#endif
+
+// The material at a point.
+struct PrincipledMaterial {
+    float coverage;     // 1 - part that passes unscattered because of alpha
+    Spectrum color;
+    float metal;        // parts of the covered surface; their sum is 1: metal,
+    float opaque;       //   dielectric that is diffuse below,
+    float transmitter;  //   dielectric that lets light through
+    bool thin;          // without refraction
+    Spectrum f0;        // of the dielectric: reflected at normal incidence,
+    float f90;          //   and at grazing angles
+    Spectrum tint;      // of what it reflects at normal incidence, times f90
+    PrincipledWidth alpha;  // GGX width
+    vec2 axis;          // in the local xy plane, along which alpha.x is
+    bool smooth_facets; // what the facets reflect and transmit is not scattered
+    float eta;          // index of the medium on the far side over that on the side of wo
+    bool importance;
+    Spectrum diffuse_reflected, diffuse_transmitted;  // parts of the diffuse light, as power
+    float coat;         // covered part
+    float coat_alpha;
+    Spectrum sheen;
+    float sheen_most;   // greatest of it
+    float sheen_roughness;
+};
+
+PrincipledMaterial principled_material(Principled r, SurfaceContext c, float side) {
+    PrincipledMaterial m;
+    float alpha = clamp(r.base_color.a, 0.0, 1.0);
+    m.coverage = r.alpha_mode == 0u ? 1.0 : r.alpha_mode == 1u ? (alpha < r.alpha_cutoff ? 0.0 : 1.0) : alpha;
+    m.color = factor_of_rgb(clamp(r.base_color.rgb, vec3(0), vec3(1)));
+    m.metal = clamp(r.metallic, 0.0, 1.0);
+    m.transmitter = (1.0 - m.metal) * clamp(r.transmission, 0.0, 1.0);
+    m.opaque = max((1.0 - m.metal) - m.transmitter, 0.0);
+    m.thin = r.thin;
+    m.f90 = clamp(r.specular, 0.0, 1.0);
+    m.tint = m.f90 * factor_of_rgb(max(r.specular_color, vec3(0)));
+    m.f0 = min(square((r.ior - 1.0) / (r.ior + 1.0)) * m.tint, Spectrum(m.f90));
+    float width = square(clamp(r.roughness, 0.0, 1.0));
+#ifdef ABSENT_principled_anisotropy
+    m.alpha = width;
+#else
+    m.alpha = vec2(width);
+    if (r.anisotropy > 0.0) {
+        m.alpha.y = max(width, SMOOTH_ALPHA);
+        m.alpha.x = mix(m.alpha.y, 1.0, square(min(r.anisotropy, 1.0)));
+        width = m.alpha.x;
+    }
+    m.axis = vec2(cos(r.anisotropy_rotation), sin(r.anisotropy_rotation));
+#endif
+    m.smooth_facets = width < SMOOTH_ALPHA || (!m.thin && m.transmitter > 0.0 &&
+                                               interface_is_smooth(width, c.ior_above, c.ior_below));
+    m.eta = side < 0.0 ? c.ior_above / c.ior_below : c.ior_below / c.ior_above;
+    m.importance = c.importance;
+    float through = clamp(r.diffuse_transmission, 0.0, 1.0);
+    m.diffuse_reflected = m.color, m.diffuse_transmitted = Spectrum(0);
+    if (through > 0.0) {
+        Spectrum sent = through * factor_of_rgb(clamp(r.diffuse_transmission_color, vec3(0), vec3(1)));
+        m.diffuse_transmitted = sent * min(m.eta * m.eta, 1.0);
+        m.diffuse_reflected = (1.0 - through) * m.color + (sent - m.diffuse_transmitted);
+    }
+    m.coat = clamp(r.clearcoat, 0.0, 1.0);
+    m.coat_alpha = square(clamp(r.clearcoat_roughness, 0.0, 1.0));
+    m.sheen = Spectrum(0), m.sheen_most = 0.0, m.sheen_roughness = r.sheen_roughness;
+    if (any(greaterThan(r.sheen_color, vec3(0)))) {
+        m.sheen = factor_of_rgb(clamp(r.sheen_color, vec3(0), vec3(1)));
+        m.sheen_most = max_component(m.sheen);
+    }
+    return m;
+}
+
+// Directions in the frame whose x axis is the one of alpha.x, and back.
+vec3 principled_turned(PrincipledMaterial m, vec3 w) {
+#ifndef ABSENT_principled_anisotropy
+    w.xy = vec2(dot(m.axis, w.xy), m.axis.x * w.y - m.axis.y * w.x);
+#endif
+    return w;
+}
+vec3 principled_turned_back(PrincipledMaterial m, vec3 w) {
+#ifndef ABSENT_principled_anisotropy
+    w.xy = vec2(m.axis.x * w.x - m.axis.y * w.y, m.axis.y * w.x + m.axis.x * w.y);
+#endif
+    return w;
+}
+
+// Not less than the albedo at mu of facets that reflect f0 and at grazing angles f90. That albedo is f0 (E - B) + f90 B,
+// where E <= 1 is the albedo of facets that reflect everything and B the same weighted by Schlick's (1 - wo·h)^5. B is less
+// than q (1 - mu)^p + 2e-4, with q and p fitted to B by quadrature.
+float schlick_bound(float f0, float f90, float alpha, bool is_smooth, float mu, out float average) {
+    float p = 5.0, q = 1.0, tail = 0.0;
+    if (!is_smooth) {
+        p = 2.5 + 2.5 * exp(-6.5 * alpha);
+        q = 0.9998 / (1.0 + alpha * (3.2147 + alpha * (51.812 - alpha * 5.0068)));
+        tail = 2e-4;
+    }
+    average = f0 + (f90 - f0) * (q * 2.0 / ((p + 1.0) * (p + 2.0)) + tail);
+    return f0 + (f90 - f0) * (q * pow(max(1.0 - mu, 1e-7), p) + tail);
+}
+
+// D(mu), of the dielectric's specular part. Of two widths, the greater of their bounds.
+float principled_bound(PrincipledMaterial m, float mu, out float average) {
+    float f0 = max_component(m.f0);
+#ifdef ABSENT_principled_anisotropy
+    return schlick_bound(f0, m.f90, m.alpha, m.smooth_facets, mu, average);
+#else
+    float average_y;
+    float x = schlick_bound(f0, m.f90, m.alpha.x, m.smooth_facets, mu, average);
+    float y = schlick_bound(f0, m.f90, m.alpha.y, m.smooth_facets, mu, average_y);
+    average = max(average, average_y);
+    return max(x, y);
+#endif
+}
+
+// What the coat leaves, and coat and sheen together, of light along two directions.
+const float COAT_F0 = 0.04;  // of index 1.5
+float principled_coat_fresnel(PrincipledMaterial m, float cos_o) {
+    return m.coat * mix(COAT_F0, 1.0, schlick_weight(cos_o));
+}
+float principled_coat_passes(PrincipledMaterial m, float mu) {
+    if (!(m.coat > 0.0)) return 1.0;
+    float average;
+    return 1.0 - m.coat * schlick_bound(COAT_F0, 1.0, m.coat_alpha, m.coat_alpha < SMOOTH_ALPHA, mu, average);
+}
+float principled_layers_pass(PrincipledMaterial m, float mu) {
+    float passes = principled_coat_passes(m, mu);
+    if (m.sheen_most > 0.0) passes *= 1.0 - m.sheen_most * sheen_albedo_bound(mu, m.sheen_roughness);
+    return passes;
+}
+float principled_layers_pass(PrincipledMaterial m, float mu_o, float mu_i) {
+    return min(principled_layers_pass(m, mu_o), principled_layers_pass(m, mu_i));
+}
+
+float principled_transmission_scale(PrincipledMaterial m) {
+    return m.thin || m.importance ? 1.0 : 1.0 / (m.eta * m.eta);
+}
+
+// Diffuse f |cos wi|, 1/sr; mu_i < 0 where it goes through.
+Spectrum principled_diffuse(PrincipledMaterial m, float mu_o, float mu_i) {
+    float average;
+    float o = principled_bound(m, mu_o, average), i = principled_bound(m, abs(mu_i), average);
+    Spectrum part = mu_i > 0.0 ? m.diffuse_reflected : m.diffuse_transmitted * (m.importance ? 1.0 : 1.0 / (m.eta * m.eta));
+    return part * (m.opaque * (1.0 - o) * (1.0 - i) * abs(mu_i) / (PI * max(1.0 - average, 1e-6)));
+}
+
+// Part of the diffuse samples that go through.
+float principled_diffuse_through(PrincipledMaterial m) {
+    float r = brightness(m.diffuse_reflected), t = brightness(m.diffuse_transmitted);
+    return t > 0.0 ? t / (r + t) : 0.0;
+}
+
+// What a facet seen at cos_o reflects and transmits, as power.
+void principled_facet(PrincipledMaterial m, float cos_o, out Spectrum reflected, out Spectrum transmitted) {
+    float s = schlick_weight(cos_o);
+    Spectrum f = mix(m.f0, Spectrum(m.f90), s);
+    Spectrum f_transmitter = f;
+    if (!m.thin) {
+        // Fresnel's equations, coloured and scaled as Schlick's formula is; beyond the critical angle all is reflected.
+        float exact = fresnel_dielectric(cos_o, m.eta), normal = square((m.eta - 1.0) / (m.eta + 1.0));
+        f_transmitter = Spectrum(1);
+        if (exact < 1.0)
+            f_transmitter = min(exact * mix(m.tint, Spectrum(m.f90), (exact - normal) / (1.0 - normal)), Spectrum(m.f90));
+    }
+    reflected = m.metal * mix(m.color, Spectrum(1), s) + m.opaque * f + m.transmitter * f_transmitter;
+    transmitted = m.transmitter * (1.0 - max_component(f_transmitter)) * m.color;
+}
+
+// Probability of reflection at a facet.
+float principled_reflection_part(Spectrum reflected, Spectrum transmitted) {
+    float r = brightness(reflected), t = brightness(transmitted);
+    return r + t > 0.0 ? r / (r + t) : 1.0;
+}
+
+// Facets that transmit without changing the direction.
+bool principled_transmits_straight(PrincipledMaterial m) {
+    return m.smooth_facets && (m.thin || m.eta == 1.0);
+}
+
+// `sample` first chooses among what passes straight on, the diffuse part, coat, sheen and the facets.
+struct PrincipledChoice {
+    Spectrum straight;  // part of the light
+    float straight_probability, diffuse_probability, coat_probability, sheen_probability, facet_probability;  // sum 1
+};
+
+PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
+    Spectrum reflected, transmitted;
+    principled_facet(m, mu_o, reflected, transmitted);
+    PrincipledChoice choice;
+    choice.straight = Spectrum(0);
+    if (principled_transmits_straight(m)) {
+        choice.straight = m.coverage * transmitted;
+        transmitted = Spectrum(0);
+    }
+    float passes = principled_layers_pass(m, mu_o);
+    choice.straight = Spectrum(1.0 - m.coverage) + passes * choice.straight;
+    float average;
+    float straight = brightness(choice.straight);
+    float diffuse = m.coverage * passes * m.opaque * brightness(m.diffuse_reflected + m.diffuse_transmitted) *
+                    (1.0 - principled_bound(m, mu_o, average));
+    // Tilted facets reflect more than the level surface would, so they keep a share even where that is
+    // nothing.
+    float facets = m.coverage * max(passes * brightness(reflected + transmitted), 0.02);
+    float coat = 0.0, sheen = 0.0;
+    if (m.coat > 0.0) coat = m.coverage * max(principled_coat_fresnel(m, mu_o), 0.02);
+    if (m.sheen_most > 0.0)
+        sheen = m.coverage * principled_coat_passes(m, mu_o) * brightness(m.sheen) *
+                max(sheen_albedo_bound(mu_o, m.sheen_roughness), 0.02);
+    float scale = 1.0 / (straight + diffuse + coat + sheen + facets);
+    choice.straight_probability = straight * scale;
+    choice.diffuse_probability = diffuse * scale;
+    choice.coat_probability = coat * scale;
+    choice.sheen_probability = sheen * scale;
+    choice.facet_probability = facets * scale;
+    return choice;
+}
+
+// f |cos wi| and its pdf, for wo above; directions turned.
+Spectrum principled_evaluate(PrincipledMaterial m, vec3 wo, vec3 wi, out float pdf) {
+    PrincipledChoice choice = principled_choice(m, wo.z);
+    bool reflects = wi.z > 0.0;
+    vec3 mirrored = vec3(wi.xy, abs(wi.z));
+    float passes = m.coverage * principled_layers_pass(m, wo.z, mirrored.z);
+    float diffuse_through = principled_diffuse_through(m);
+    Spectrum value = passes * principled_diffuse(m, wo.z, wi.z);
+    pdf = choice.diffuse_probability * INV_PI * mirrored.z * (reflects ? 1.0 - diffuse_through : diffuse_through);
+    if (m.sheen_most > 0.0 && reflects) {
+        float below_coat = min(principled_coat_passes(m, wo.z), principled_coat_passes(m, wi.z));
+        value += m.coverage * below_coat * sheen_reflection(wo, wi, m.sheen_roughness) * m.sheen;
+        pdf += choice.sheen_probability * 0.5 * INV_PI;
+    }
+    if (m.coat > 0.0 && m.coat_alpha >= SMOOTH_ALPHA && reflects) {
+        vec3 h = reflection_normal(wo, wi);
+        value += m.coverage * principled_coat_fresnel(m, dot(wo, h)) * ggx_reflection(wo, wi, h, m.coat_alpha);
+        pdf += choice.coat_probability * ggx_reflection_pdf(wo, h, m.coat_alpha);
+    }
+    if (m.smooth_facets) return value;
+
+    bool refracts = !reflects && !m.thin;
+    vec3 h = refracts ? refraction_normal(wo, wi, m.eta) : reflection_normal(wo, mirrored);
+    Spectrum reflected, transmitted;
+    principled_facet(m, dot(wo, h), reflected, transmitted);
+    float reflection_part = principled_reflection_part(reflected, transmitted);
+    float facet_pdf = ggx_reflection_pdf(wo, h, m.alpha);
+    if (refracts) facet_pdf = ggx_refraction_pdf(wo, wi, h, m.alpha, m.eta);
+    pdf += choice.facet_probability * facet_pdf * (reflects ? reflection_part : 1.0 - reflection_part);
+    Spectrum part = reflects ? reflected : transmitted * principled_transmission_scale(m);
+    return value + passes * part * (facet_pdf * ggx_g1(mirrored, m.alpha));
+}
+
+// The part that is reflected or refracted as at a perfectly smooth surface, and its probability.
+Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoice choice, out float probability) {
+    bool reflects = wi.z > 0.0;
+    Spectrum value = Spectrum(0);
+    probability = 0.0;
+    if (m.smooth_facets) {
+        Spectrum reflected, transmitted;
+        principled_facet(m, wo.z, reflected, transmitted);
+        if (principled_transmits_straight(m)) transmitted = Spectrum(0);
+        float part = principled_reflection_part(reflected, transmitted);
+        probability = choice.facet_probability * (reflects ? part : 1.0 - part);
+        value = principled_layers_pass(m, wo.z, abs(wi.z)) *
+                (reflects ? reflected : transmitted * principled_transmission_scale(m));
+    }
+    if (reflects && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA) {
+        probability += choice.coat_probability;
+        value += principled_coat_fresnel(m, wo.z);
+    }
+    return m.coverage * value;
+}
