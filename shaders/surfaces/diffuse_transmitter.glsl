@@ -3,7 +3,7 @@
 // Where the media on its sides differ, what comes from the denser side leaves with 1 / n² of the transmittance, and the
 // rest is reflected: radiance over squared index is kept, both ways (Veach 1997, section 5.2).
 struct DiffuseTransmitter {
-    SpectrumRef reflectance;           //: 0.5 in [0, 1]. Reflected part of the flux. With transmittance at most 1, or both are scaled.
+    SpectrumRef reflectance;           //: 0.5 in [0, 1]. Reflected part. With transmittance at most 1, or both are scaled.
     SpectrumRef transmittance;         //: 0.5 in [0, 1]. Part of the flux that goes through, from the less dense side.
     TextureRef reflectance_texture;    //: none. Multiplies reflectance.
     TextureRef transmittance_texture;  //: none. Multiplies transmittance.
