@@ -42,5 +42,11 @@
 #define MEDIUM_CLASSES(X)              \
     X(1, Homogeneous, homogeneous)
 
+// folder phases/, contract interfaces/phase_function.glsl
+#define PHASE_CLASSES(X)               \
+    X(1, Isotropic, isotropic)         \
+    X(2, HenyeyGreenstein, henyey_greenstein) \
+    X(3, Rayleigh, rayleigh)
+
 // folder elements/, contract interfaces/optical_element.glsl
 #define ELEMENT_CLASSES(X)

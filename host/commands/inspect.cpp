@@ -51,7 +51,9 @@ int inspect_command(const InspectOptions& options) {
     feature(f.dispersion, "dispersion", "a refractive index depends on the wavelength",
             "refractive indices are the same at all wavelengths");
     feature(f.interfaces, "interfaces", "surfaces separate media", "no medium named");
-    feature(f.media, "media", "a medium absorbs", "no medium absorbs");
+    feature(f.media, "media", "a medium absorbs or scatters", "no medium absorbs");
+    feature(f.scattering, "scattering", "a medium scatters: paths have vertices between surfaces",
+            "no medium scatters");
     feature(f.straight, "straight passage",
             "a surface class lets light pass unscattered: shadow rays go through",
             "shadow rays end at the first surface");

@@ -96,8 +96,8 @@ const BlockLayout& reflected_block(const ShaderLayout& layout) {
 
 }  // namespace
 
-const std::array<InterfaceInfo, 6>& all_interfaces() {
-    static const std::array<InterfaceInfo, 6> table = {{
+const std::array<InterfaceInfo, 7>& all_interfaces() {
+    static const std::array<InterfaceInfo, 7> table = {{
         {Interface::geometry, "geometry", "geometry", "interfaces/geometry.glsl", "GEOMETRY_CLASSES",
          "GeometryRecords"},
         {Interface::light, "light", "lights", "interfaces/light_source.glsl", "LIGHT_CLASSES",
@@ -110,6 +110,8 @@ const std::array<InterfaceInfo, 6>& all_interfaces() {
          "MediumRecords"},
         {Interface::element, "element", "elements", "interfaces/optical_element.glsl", "ELEMENT_CLASSES",
          "ElementRecords"},
+        {Interface::phase, "phase", "phases", "interfaces/phase_function.glsl", "PHASE_CLASSES",
+         "PhaseRecords"},
     }};
     return table;
 }

@@ -19,7 +19,7 @@
 
 namespace etendue {
 
-enum class Interface { geometry, light, receiver, surface, medium, element };
+enum class Interface { geometry, light, receiver, surface, medium, element, phase };
 
 struct InterfaceInfo {
     Interface interface;
@@ -29,7 +29,7 @@ struct InterfaceInfo {
     const char* table;     // macro of registry.h
     const char* buffer;    // storage buffer of the records
 };
-const std::array<InterfaceInfo, 6>& all_interfaces();
+const std::array<InterfaceInfo, 7>& all_interfaces();
 const InterfaceInfo& interface_info(Interface interface);
 
 struct Parameter {

@@ -9,7 +9,7 @@ namespace etendue {
 Features Features::everything() {
     Features f;
     f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.textures = true;
-    f.media = f.interfaces = f.straight = f.light_tree = true;
+    f.media = f.scattering = f.interfaces = f.straight = f.light_tree = true;
     f.light_count = 16;
     f.infinite_light_count = 2;
     f.scene_radius = 1;
@@ -29,6 +29,7 @@ std::string Features::defines() const {
     define("HAS_NORMAL_MAPS", normal_maps);
     define("HAS_TEXTURES", textures);
     define("HAS_MEDIA", media);
+    define("HAS_SCATTERING", scattering);
     define("HAS_INTERFACES", interfaces);
     define("HAS_STRAIGHT", straight);
     define("SPECTRAL", spectral);

@@ -14,7 +14,8 @@ struct Features {
     bool vertex_attributes = false;   // normals, tangents, texture coordinates or colors
     bool normal_maps = false;
     bool textures = false;
-    bool media = false;       // some medium absorbs
+    bool media = false;       // some medium absorbs or scatters
+    bool scattering = false;  // some medium scatters
     bool interfaces = false;  // some surface separates media: paths keep track of where they are
     bool straight = false;    // some surface lets light pass straight on: shadow rays go through
     bool spectral = false;    // paths carry wavelengths instead of colours

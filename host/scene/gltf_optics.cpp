@@ -63,7 +63,7 @@ void load_class_files(GltfImport& import, const JsonAt& optics) {
         only_members(at, {"interface", "file"});
         JsonAt interface_at = member(at, "interface"), file = member(at, "file");
         const std::string& interface = text_value(interface_at);
-        const auto known = {"surface", "geometry", "light", "receiver", "medium", "element"};
+        const auto known = {"surface", "geometry", "light", "receiver", "medium", "element", "phase"};
         if (std::none_of(known.begin(), known.end(), [&](const char* name) { return interface == name; }))
             fail_at(interface_at, "is '{}'; must be {}", interface, fmt::join(known, ", "));
         import.scene.class_files.push_back({interface, resolve_uri(import, file), at.pointer});

@@ -64,14 +64,38 @@ void SceneCompiler::add_class_files() {
         if (found == interfaces.end())
             fail_input(
                 "{}/interface: there is no interface {}; allowed: geometry, light, receiver, surface, "
-                "medium, element",
+                "medium, element, phase",
                 message_place(in_, file.where), file.interface);
         out_.registry->add_class_file(found->interface,
                                       file.file.is_absolute() ? file.file : in_.folder / file.file);
     }
 }
 
+// A parameter of type PhaseRef is itself an object of a class.
+void SceneCompiler::add_phases() {
+    std::vector<Added> added;
+    std::vector<std::string> places;
+    for (const MediumDescription& medium : in_.media)
+        for (const Parameter& p : find_class(Interface::medium, medium.medium).parameters) {
+            if (p.member.type != "PhaseRef") continue;
+            const nlohmann::json& given = medium.medium.parameters;
+            nlohmann::json value = given.contains(p.member.name) ? given[p.member.name] : p.default_value;
+            const std::string where = medium.medium.where + "/" + p.member.name;
+            if (!value.is_object() || !value.contains("class") || !value["class"].is_string())
+                fail_input("{}: allowed: {{\"class\": name of a phase function, …}}",
+                           message_place(in_, where));
+            const std::string name = value["class"];
+            value.erase("class");
+            added.push_back(add_record(Interface::phase, {name, value, where}));
+            places.push_back(where);
+        }
+    const auto refs = references(Interface::phase, added);
+    for (size_t i = 0; i < refs.size(); ++i) phases_[places[i]] = refs[i];
+    resolver_.phase = [this](const std::string& where) { return phases_.at(where); };
+}
+
 void SceneCompiler::add_media() {
+    add_phases();
     std::vector<Added> added;
     for (const MediumDescription& medium : in_.media)
         added.push_back(add_record(Interface::medium, medium.medium));
@@ -82,10 +106,14 @@ void SceneCompiler::add_media() {
     write_headers();
     upload("MediumRecords", records_[Interface::medium].bytes());
     const Buffer in = create_buffer(device_, refs, "MediumRefs");
-    const Buffer out(device_, refs.size() * 4, "MediumClarity");
+    const Buffer out(device_, refs.size() * 4, "MediumEffects");
     run_once("kernels/measure_media.comp", uint32_t(refs.size()),
-             {{"MediumRefs", &in}, {"MediumClarity", &out}}, {{"count", uint32_t(refs.size())}});
-    for (uint32_t is_clear : out.read_array<uint32_t>(refs.size())) out_.features.media |= !is_clear;
+             {{"MediumRefs", &in}, {"MediumEffects", &out}}, {{"count", uint32_t(refs.size())}});
+    for (uint32_t effect : out.read_array<uint32_t>(refs.size())) {
+        out_.features.media |= effect > 0;
+        out_.features.scattering |= effect == 2;
+    }
+    if (!out_.features.scattering) out_.classes.erase(Interface::phase);
 }
 
 const ClassInfo& SceneCompiler::find_class(Interface interface, const ObjectDescription& object) {

@@ -26,6 +26,7 @@ class SceneCompiler {
     // scene.cpp
     void add_class_files();
     void add_media();
+    void add_phases();     // of the media
     void write_headers();  // for the classes used and the records added so far
     const ClassInfo& find_class(Interface interface, const ObjectDescription& object);
     const ClassInfo& use_class(Interface interface, const ObjectDescription& object);
@@ -100,9 +101,10 @@ class SceneCompiler {
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
     World world_;
     uint64_t large_arrays_[6] = {};
-    std::vector<uint32_t> lights_;           // RecordRefs
-    uint32_t first_area_light_ = 0;          // in lights_, before they are sorted
-    std::vector<uint32_t> area_primitives_;  // of each area light
+    std::map<std::string, uint32_t> phases_;  // RecordRefs, by their places in the scene
+    std::vector<uint32_t> lights_;            // RecordRefs
+    uint32_t first_area_light_ = 0;           // in lights_, before they are sorted
+    std::vector<uint32_t> area_primitives_;   // of each area light
 };
 
 }  // namespace etendue

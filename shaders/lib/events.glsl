@@ -1,4 +1,4 @@
-// What befalls a path at a surface, whichever way it goes.
+// What befalls a path at a surface or within a medium, whichever way it goes.
 #include "lib/mis.glsl"
 
 // The end of a ray towards a sampled point of a light lies short of the light by the rounding error of both points, so
@@ -8,14 +8,33 @@ float shadow_t_max(vec3 origin, float distance) {
     return distance * (1.0 - 8.0 * EPSILON) - 32.0 * EPSILON * (max(a.x, max(a.y, a.z)) + distance);
 }
 
-// A ray from p that ends short of what lies at `distance` along `direction`.
-ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float distance, Spectrum contribution) {
+// Takes a path through its medium to what it hits, or to where it scatters before. True: it scatters, hit.t metres on.
+bool cross_medium(inout Path path, inout Hit hit) {
+#if HAS_SCATTERING
+    if (medium_scatters(path.medium)) {
+        FreePath free = medium_free_path(path.medium, hit.t, path.throughput, sample_2d(path.random));
+        path.throughput *= free.weight;
+        path.passage *= free.passage;
+        // Never on the other side of what it would have hit, by rounding.
+        if (free.scatters) hit.t = min(free.distance, max(0.0, shadow_t_max(path.origin, hit.t)));
+        return free.scatters;
+    }
+#endif
+#if HAS_MEDIA
+    if (path.medium != NO_RECORD) path.throughput *= medium_transmittance(path.medium, hit.t);
+#endif
+    return false;
+}
+
+// A ray from p that ends short of what lies at `distance` along `direction`. `others`: see weigh().
+ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float distance, Spectrum contribution, float others) {
     ShadowRay shadow = no_shadow_ray();
     shadow.contribution = contribution;
     shadow.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
     shadow.direction = direction;
     shadow.t_max = distance >= INFINITY ? INFINITY : max(0.0, shadow_t_max(shadow.origin, distance));
     shadow.medium = scattering_medium(s, direction);
+    weigh(shadow, others);
     return shadow;
 }
 
@@ -26,7 +45,7 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
     bool straight = (b.event & EVENT_STRAIGHT) != 0u;
     vec3 direction = straight ? path.direction : normalize(s.frame * b.wi);
     // A direction that the shading frame puts on one side of the surface and the surface on the other carries nothing.
-    if (!straight && dot(direction, s.normal) * b.wi.z <= 0.0) return false;
+    if (!straight && !is_on_one_side(s, direction, b.wi)) return false;
 #if FORWARD
     float probability = frame_probability(s, -path.direction, direction);
     if (!is_seen_from(s, direction) || !(probability > 0.0)) return false;
@@ -40,10 +59,13 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
 #if !FORWARD
         event.next_pdf_reverse *= frame_probability(s, direction, -path.direction);
 #endif
-        update_mis(path, mis, s.material, b, event.next_pdf_reverse, abs(dot(direction, s.normal)));
+        update_mis(path, mis, s.material, b, event.next_pdf_reverse, catch_density(s, direction));
 #endif
         path.pdf = (b.event & EVENT_DELTA) != 0u ? 0.0 : b.pdf;
         path.reference = p.position;
+#if HAS_SCATTERING
+        path.passage = 1.0;
+#endif
     }
     path.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
     path.direction = direction;
@@ -52,15 +74,16 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
 }
 
 // Russian roulette on what the path still carries. Radiance that has entered a dense medium is scaled by 1 / ior² until it
-// leaves, which is no reason to end the path.
-bool survive_roulette(inout Path path) {
+// leaves, which is no reason to end the path. Within media that absorb little, light scatters thousands of times before it comes out:
+// there nothing but absorption ends paths.
+bool survive_roulette(inout Path path, bool in_volume) {
     if (path.depth < 3u) return true;
     float carried = max_component(path.throughput);
 #if HAS_INTERFACES && !FORWARD
     float ior = medium_ior(path.medium);
     carried *= ior * ior;
 #endif
-    float q = min(carried, path.depth < 64u ? 1.0 : 0.95);
+    float q = min(carried, path.depth < 64u || in_volume ? 1.0 : 0.95);
     if (q >= 1.0) return true;
     if (sample_1d(path.random) >= q) return false;
     path.throughput *= 1.0 / q;
@@ -68,9 +91,9 @@ bool survive_roulette(inout Path path) {
 }
 
 // After an event: does the path live on?
-bool continue_path(inout Path path, inout Counters counters) {
+bool continue_path(inout Path path, bool in_volume, inout Counters counters) {
     float carried = luminance(path.throughput);
-    bool survives = survive_roulette(path);
+    bool survives = survive_roulette(path, in_volume);
 #if FORWARD
     counters.roulette += carried - (survives ? luminance(path.throughput) : 0.0);
 #endif

@@ -9,10 +9,10 @@ struct LightVertex {  // 64 bytes; 68 with wavelengths, of which there are four
     Spectrum throughput;  // relative flux
     float vc;         // dVC there
     vec2 direction;   // towards where the light came from; encode_octahedral
-    uint normal;      // geometric; encode_octahedral_16
+    uint normal;      // geometric; encode_octahedral_16. Within a medium its RecordRef
     uint instance;    // with uv and primitive: the hit, to locate it again
     vec2 uv;
-    uint primitive;
+    uint primitive;   // NO_RECORD within a medium
     uint previous;    // light_vertex_link
 };
 

@@ -10,6 +10,10 @@
 //   towards the receiver, or towards a vertex nearby, where connections would have huge values: everything else is sampled well
 //   enough without, and a query costs as much as a ray. A path learns whether it may have merged at a vertex one event later
 //   (Path.pending).
+// - Within a medium a vertex has no cosine: the extinction coefficient takes its place, since that is what of a ray is caught per
+//   volume (Křivánek et al. 2014, "Unifying Points, Beams, and Paths in Volumetric Light Transport Simulation", section 3). Media
+//   that scatter let a ray pass with some probability, which a connection does not need: ShadowRay.others waits for it. On both sides
+//   of vc it cancels. Weights take the passage of an average lane, since the exact one depends on what a path carries.
 // - The merging radius varies over space, so vc is kept without a twin in units of merging (dVM = dVC / density there).
 #include "interfaces/light_source.glsl"
 #include "interfaces/receiver.glsl"
@@ -34,7 +38,7 @@ struct VertexMis {
 };
 
 #if !BIDIRECTIONAL
-VertexMis vertex_mis(Path path, SurfacePoint p) { return VertexMis(0.0, 0.0, 0.0); }
+VertexMis vertex_mis(Path path, SurfacePoint p, ScatteringPoint s) { return VertexMis(0.0, 0.0, 0.0); }
 #else
 #if MERGE_VERTICES
 // Images of few pixels and wide angles get less than they ask for: lib/vertex_grid.glsl wants radii that change slowly.
@@ -57,7 +61,12 @@ bool is_short_edge(vec3 merging, vec3 next) {
 #endif
 }
 
-bool is_narrow(uint material) { return (materials[material].flags & MATERIAL_NARROW) != 0u; }
+bool is_narrow(uint material) {
+#if HAS_SCATTERING
+    if (material == NO_RECORD) return false;  // within a medium
+#endif
+    return (materials[material].flags & MATERIAL_NARROW) != 0u;
+}
 
 // Vertices are connected with one of several of a forward path: that counts as so much of a connection to each. (Any number is
 // right; about 1 / vertices of a path is best.)
@@ -88,21 +97,25 @@ float start_connection_pdf(Path path, vec3 position) {
 }
 #endif
 
-VertexMis vertex_mis(Path path, SurfacePoint p) {
+VertexMis vertex_mis(Path path, SurfacePoint p, ScatteringPoint s) {
     VertexMis m;
     // A ray along the surface, to the last bit, has no density there: it counts as one that hardly meets it.
-    float to_area = 1.0 / max(abs(dot(path.direction, p.geometric_normal)), 1e-12);
+    float to_area = 1.0 / max(catch_density(s, path.direction), 1e-12);
     bool starts = (path.flags & PATH_STARTS) != 0u, after_narrow = (path.flags & PATH_AFTER_NARROW) != 0u;
     vec3 d = p.position - path.reference;
     float distance_squared = dot(d, d);
 #if FORWARD
     m.vcm = path.vcm * to_area * (starts ? start_connection_pdf(path, p.position) : distance_squared);
-    m.merging = after_narrow ? merge_density(p.position) : 0.0;
+    m.merging = after_narrow && !in_volume(s) ? merge_density(p.position) : 0.0;
     bool merged_before = is_narrow(p.material) || is_short_edge(path.reference, p.position);
 #else
     m.vcm = path.vcm * to_area * (starts && (path.flags & PATH_PARALLEL) != 0u ? 1.0 : distance_squared);
-    m.merging = starts || after_narrow || is_short_edge(p.position, path.reference) ? merge_density(p.position) : 0.0;
+    bool merges = starts || after_narrow || is_short_edge(p.position, path.reference);
+    m.merging = merges && !in_volume(s) ? merge_density(p.position) : 0.0;
     bool merged_before = is_narrow(p.material);
+#endif
+#if HAS_SCATTERING
+    m.vcm /= path.passage;
 #endif
     m.vc = (path.vc + (merged_before ? path.pending : 0.0)) * to_area;
     return m;

@@ -24,6 +24,9 @@ struct Path {
     vec3 reference;       // point where the direction was chosen
     float pdf;            // of choosing the direction there, 1/sr; 0 = one of finitely many (delta, camera)
     uint medium;          // RecordRef of the medium the ray is in
+#if HAS_SCATTERING
+    float passage;        // of scattering media since the reference (interfaces/medium_optics.glsl)
+#endif
     uint depth;           // events so far
     Sampler random;
 #if BIDIRECTIONAL
@@ -67,6 +70,9 @@ struct ShadowRay {
     float t_max;            // 0 = no ray
     Spectrum contribution;
     uint medium;
+#if HAS_SCATTERING
+    float others;           // of weigh(): the passage is known once the ray is traced
+#endif
 #if FORWARD
     uint pixel;             // that it contributes to
 #endif
@@ -75,10 +81,32 @@ struct ShadowRay {
 ShadowRay no_shadow_ray() {
     ShadowRay ray;
     ray.origin = vec3(0), ray.direction = vec3(0, 0, 1), ray.t_max = 0.0, ray.contribution = Spectrum(0), ray.medium = NO_RECORD;
+#if HAS_SCATTERING
+    ray.others = 0.0;
+#endif
 #if FORWARD
     ray.pixel = 0u;
 #endif
     return ray;
+}
+
+// The weight of a way to make a path, `others` being the density of all others relative to its own. With a single other in
+// backward rays the power heuristic (Veach 1997, section 9.2.4), else the balance heuristic.
+float mis_weight(float others) {
+#if BIDIRECTIONAL
+    return 1.0 / (1.0 + others);
+#else
+    return 1.0 / (1.0 + others * others);
+#endif
+}
+
+// Weighs a connection. `others`: as far as they do not pass scattering media along it, which all of them must and it need not.
+void weigh(inout ShadowRay ray, float others) {
+#if HAS_SCATTERING
+    ray.others = others;
+#else
+    ray.contribution *= mis_weight(others);
+#endif
 }
 
 // A path of more events than this is cut, and what it carried is reported as lost: only a closed scene that absorbs

@@ -5,5 +5,6 @@ uint record_index(uint ref) { return ref & 0xFFFFFFu; }
 
 // Typed members of records. The type tells the host what to resolve the scene's parameter to.
 struct MediumRef { uint ref; };             // a medium's name -> RecordRef of its record
+struct PhaseRef { uint ref; };              // {"class": …} of a phase function -> RecordRef of its record
 struct TextureRef { uint index; };          // a glTF textureInfo -> index of a Texture, NO_RECORD where absent
 struct Placement { mat4x3 world_from_local; };  // the node's transform; needs no parameter

@@ -1,17 +1,20 @@
 // A hit made ready to scatter: the shading frame, the media on both sides, and the checks that keep shading normals from
-// letting light through. Classes of SurfaceOptics see none of this.
+// letting light through. Classes of SurfaceOptics see none of this. A point within a medium is made to look like one, so that
+// what follows need not tell them apart.
 #include "interfaces/medium_optics.glsl"
 #include "interfaces/surface_optics.glsl"
+#include "lib/accurate_math.glsl"
 #include "lib/frames.glsl"
 #include "lib/materials.glsl"
 #include "lib/primitives.glsl"
 
 struct ScatteringPoint {
-    mat3 frame;           // columns: tangent, bitangent, normal to scatter about, in world space
+    mat3 frame;           // columns: tangent, bitangent, normal to scatter about, in world space; within a medium the last is the
+                          // direction of the ray
     vec3 normal;          // geometric, unit
     vec3 shading_normal;  // unit; that of the frame unless it is flat
     vec3 wo;              // towards where the ray came from, in the frame
-    uint surface;         // RecordRef
+    uint surface;         // RecordRef; NO_RECORD within a medium, as is the material
     uint material;
     uint medium_above;    // media on the side of the normal and below it
     uint medium_below;
@@ -19,7 +22,19 @@ struct ScatteringPoint {
 #if HAS_DISPERSION
     bool disperses;       // wavelengths part here
 #endif
+#if HAS_SCATTERING
+    uint phase;           // RecordRef; NO_RECORD at a surface
+    float extinction;     // of an average lane, 1/m
+#endif
 };
+
+bool in_volume(ScatteringPoint s) {
+#if HAS_SCATTERING
+    return s.phase != NO_RECORD;
+#else
+    return false;
+#endif
+}
 
 // The shading normal, bent by a normal map where there is one.
 mat3 shading_frame(SurfacePoint p, Material m) {
@@ -41,7 +56,12 @@ mat3 shading_frame(SurfacePoint p, Material m) {
 }
 
 // Do the two normals agree on which side of the surface a direction is?
-bool is_consistent(ScatteringPoint s, vec3 direction) { return dot(direction, s.shading_normal) * dot(direction, s.normal) > 0.0; }
+bool is_consistent(ScatteringPoint s, vec3 direction) {
+    return in_volume(s) || dot(direction, s.shading_normal) * dot(direction, s.normal) > 0.0;
+}
+
+// … and the frame that s now has, in which the direction is `local`?
+bool is_on_one_side(ScatteringPoint s, vec3 direction, vec3 local) { return in_volume(s) || local.z * dot(direction, s.normal) > 0.0; }
 
 // `direction` is that of the ray that hit p, `medium` the one it came through. The frame is that of the shading normal.
 ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool importance) {
@@ -57,6 +77,10 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool i
     s.medium_above = separates ? m.outside : medium;
     s.medium_below = separates ? m.inside : medium;
     s.context = SurfaceContext(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
+#if HAS_SCATTERING
+    s.phase = NO_RECORD;
+    s.extinction = 0.0;
+#endif
 #if HAS_INTERFACES
     Spectrum above = medium_spectral_ior(s.medium_above), below = medium_spectral_ior(s.medium_below);
     s.context.ior_above = above.x;
@@ -104,6 +128,7 @@ bool is_seen_from(ScatteringPoint s, vec3 direction) {
 // as bright by forward rays as by backward ones.
 float adjoint_correction(ScatteringPoint s, vec3 light_direction, vec3 direction) {
     vec3 n = s.frame[2];
+    if (in_volume(s)) return 1.0;
     float denominator = abs(dot(light_direction, s.normal) * dot(direction, n));
     return denominator > 0.0 ? abs(dot(light_direction, n) * dot(direction, s.normal)) / denominator : 0.0;
 }
@@ -111,4 +136,86 @@ float adjoint_correction(ScatteringPoint s, vec3 light_direction, vec3 direction
 // The medium that a ray is in after it leaves in a world direction.
 uint scattering_medium(ScatteringPoint s, vec3 direction) {
     return dot(direction, s.normal) > 0.0 ? s.medium_above : s.medium_below;
+}
+
+// What of the rays along a direction meets the point, per area or volume: the cosine, or the extinction coefficient.
+float catch_density(ScatteringPoint s, vec3 direction) {
+#if HAS_SCATTERING
+    if (in_volume(s)) return s.extinction;
+#endif
+    return abs(dot(direction, s.normal));
+}
+
+#if HAS_SCATTERING
+// Where a ray through `medium` scatters, as if it had hit something there.
+SurfacePoint volume_point(vec3 position, vec3 direction) {
+    SurfacePoint p;
+    p.position = position;
+    p.error = vec3(0);
+    p.geometric_normal = p.shading_normal = direction;
+    p.tangent = p.color = vec4(1);
+    p.uv0 = p.uv1 = vec2(0);
+    p.material = p.light = NO_RECORD;
+    return p;
+}
+
+ScatteringPoint volume_scattering_point(vec3 direction, uint medium, bool importance) {
+    ScatteringPoint s;
+    s.frame = frame_around(direction);
+    s.normal = s.shading_normal = direction;
+    s.wo = vec3(0, 0, -1);
+    s.surface = s.material = NO_RECORD;
+    s.medium_above = s.medium_below = medium;
+    s.context = SurfaceContext(vec2(0), vec2(0), vec4(1), 1.0, 1.0, importance);
+#if HAS_DISPERSION
+    s.disperses = false;
+#endif
+    s.phase = medium_phase(medium);
+    s.extinction = medium_mean_extinction(medium);
+    return s;
+}
+#endif
+
+// Scattering at a point of either kind, with directions in its frame (interfaces/surface_optics.glsl).
+
+bool is_delta_point(ScatteringPoint s) { return !in_volume(s) && surface_is_delta(s.surface, s.context); }
+
+#if HAS_SCATTERING
+SurfacePair phase_pair(ScatteringPoint s, vec3 wi) {
+    float value = phase_value(s.phase, wi.z);
+    return SurfacePair(Spectrum(value), value, value);
+}
+
+BsdfSample phase_event(ScatteringPoint s, vec2 u) {
+    float cosine = phase_sample(s.phase, u.x);
+    vec2 around = cos_sin_turns(u.y) * sqrt(max(0.0, (1.0 - cosine) * (1.0 + cosine)));
+    return BsdfSample(vec3(around, cosine), Spectrum(1), phase_value(s.phase, cosine), EVENT_TRANSMIT);
+}
+#endif
+
+SurfacePair scattering_pair(ScatteringPoint s, vec3 wi) {
+#if HAS_SCATTERING
+    if (in_volume(s)) return phase_pair(s, wi);
+#endif
+    return surface_pair(s.surface, s.context, s.wo, wi);
+}
+
+// Of a surface of any class, in a kernel for one class too.
+SurfacePair scattering_pair_of_any(ScatteringPoint s, vec3 wi) {
+#if HAS_SCATTERING
+    if (in_volume(s)) return phase_pair(s, wi);
+#endif
+    return surface_pair_of_any(s.surface, s.context, s.wo, wi);
+}
+
+SurfaceEvent scattering_event(ScatteringPoint s, vec3 wi, vec3 u) {
+    SurfaceEvent event = surface_event(s.surface, s.context, s.wo, wi, u);
+#if HAS_SCATTERING
+    if (in_volume(s)) {
+        event.pair = phase_pair(s, wi);
+        event.next = phase_event(s, u.xy);
+        event.next_pdf_reverse = event.next.pdf;
+    }
+#endif
+    return event;
 }

@@ -17,6 +17,7 @@ float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 #if SPECTRAL
 
 #define Spectrum vec4
+const uint LANES = 4u;
 const uint TINTED_SPECTRUM = 0x80000000u;
 
 // Twin of struct Wavelengths in host/spectra/wavelengths.h.
@@ -95,6 +96,7 @@ void scale_spectrum(inout SpectrumRef ref, vec3 color) {
 #else
 
 #define Spectrum vec3
+const uint LANES = 3u;
 vec3 spectrum_rgb(Spectrum s) { return s; }
 float brightness(Spectrum s) { return luminance(s); }
 float max_component(Spectrum s) { return max(s.x, max(s.y, s.z)); }

@@ -19,6 +19,9 @@ struct PathState {
     vec3 reference;
     uint medium;
     uint dimension;  // of the sampler
+#if HAS_SCATTERING
+    float passage;
+#endif
 #if !FORWARD
     Spectrum radiance;
 #endif
@@ -47,6 +50,9 @@ struct ShadowState {
     uint target;  // what it contributes to: a slot; forward: a pixel
     Spectrum contribution;
     uint medium;
+#if HAS_SCATTERING
+    float others;
+#endif
 };
 // Those towards lights or the receiver; behind them, from `slots` on, those of backward paths towards forward vertices.
 layout(scalar, set = 0) buffer ShadowRays { ShadowState shadow_rays[]; };
@@ -91,6 +97,9 @@ void store_path(uint slot, Path path) {
     s.reference = path.reference;
     s.medium = path.medium;
     s.dimension = path.random.dimension;
+#if HAS_SCATTERING
+    s.passage = path.passage;
+#endif
 #if !FORWARD
     s.radiance = path.radiance;
 #endif
@@ -126,6 +135,9 @@ Path load_path(Batch batch, uint slot) {
     path.depth = s.depth;
     path.reference = s.reference;
     path.medium = s.medium;
+#if HAS_SCATTERING
+    path.passage = s.passage;
+#endif
     path.random = slot_sampler(batch, slot, s.dimension);
 #if FORWARD
     path.radiance = Spectrum(0);
@@ -164,7 +176,11 @@ void append_shadow_ray(ShadowRay shadow, uint target, uint first, uint counter) 
     uint place = append(counter, casts);
     if (casts)
         shadow_rays[first + place] =
-            ShadowState(shadow.origin, shadow.t_max, shadow.direction, target, shadow.contribution, shadow.medium);
+            ShadowState(shadow.origin, shadow.t_max, shadow.direction, target, shadow.contribution, shadow.medium
+#if HAS_SCATTERING
+                        , shadow.others
+#endif
+            );
 }
 
 #if FORWARD

@@ -1,13 +1,29 @@
-// A medium that is the same everywhere: refractive index and absorption (Beer-Lambert).
+// A medium that is the same everywhere: refractive index, absorption and scattering (Beer-Lambert).
+#include "lib/free_path.glsl"
+
 struct Homogeneous {
     SpectrumRef ior;         //: 1 in [0.1, 100] ior. Real refractive index.
     SpectrumRef absorption;  //: 0 in [0, inf) 1/m. Absorption coefficient.
+    SpectrumRef scattering;  //: 0 in [0, inf) 1/m. Scattering coefficient.
+    PhaseRef phase;          //: {"class":"isotropic"}. Phase function, by which it scatters.
 };
 
 Spectrum homogeneous_ior(Homogeneous r) { return spectrum_value(r.ior); }
 
-Spectrum homogeneous_transmittance(Homogeneous r, float distance) {
-    return exp(-spectrum_value(r.absorption) * distance);
+Spectrum homogeneous_extinction(Homogeneous r) { return spectrum_value(r.absorption) + spectrum_value(r.scattering); }
+
+Spectrum homogeneous_transmittance(Homogeneous r, float distance) { return exp(-homogeneous_extinction(r) * distance); }
+
+bool homogeneous_is_clear(Homogeneous r) { return is_black(homogeneous_extinction(r)); }
+
+bool homogeneous_scatters(Homogeneous r) { return !is_black(spectrum_value(r.scattering)); }
+
+FreePath homogeneous_free_path(Homogeneous r, float distance, Spectrum carried, vec2 u) {
+    return sample_free_path(homogeneous_extinction(r), spectrum_value(r.scattering), distance, carried, u);
 }
 
-bool homogeneous_is_clear(Homogeneous r) { return is_black(spectrum_value(r.absorption)); }
+float homogeneous_passage(Homogeneous r, float distance) { return brightness(homogeneous_transmittance(r, distance)); }
+
+float homogeneous_mean_extinction(Homogeneous r) { return brightness(homogeneous_extinction(r)); }
+
+uint homogeneous_phase(Homogeneous r) { return r.phase.ref; }

@@ -19,20 +19,28 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     float distance = sqrt(distance_squared);
     vec3 direction = d / distance;
     vec3 wi = direction * s.frame;
-    if (wi.z * dot(direction, s.normal) <= 0.0) return no_shadow_ray();
-    SurfacePair here = surface_pair(s.surface, s.context, s.wo, wi);
+    if (!is_on_one_side(s, direction, wi)) return no_shadow_ray();
+    SurfacePair here = scattering_pair(s, wi);
     if (is_black(here.value)) return no_shadow_ray();
 
     vec3 light_direction = decode_octahedral(y.direction);
-    SurfacePoint q = locate(Hit(0.0, y.uv, y.primitive, y.instance), y.position, -light_direction);
-    // A shadow ray goes straight: only boundaries lie on it, index-matched by definition, so the index here holds there.
-    ScatteringPoint there = shaded_point(q, -light_direction, scattering_medium(s, direction), true);
+    ScatteringPoint there;
+#if HAS_SCATTERING
+    if (y.primitive == NO_RECORD)
+        there = volume_scattering_point(-light_direction, y.normal, true);
+    else
+#endif
+    {
+        SurfacePoint q = locate(Hit(0.0, y.uv, y.primitive, y.instance), y.position, -light_direction);
+        // A shadow ray goes straight: only boundaries lie on it, index-matched by definition, so the index here holds there.
+        there = shaded_point(q, -light_direction, scattering_medium(s, direction), true);
+    }
     if (!is_consistent(there, -direction)) flatten(there, -light_direction);
     float frame = frame_probability(there, light_direction, -direction);
     if (!(frame > 0.0)) return no_shadow_ray();
-    SurfacePair away = surface_pair_of_any(there.surface, there.context, there.wo, -direction * there.frame);
+    SurfacePair away = scattering_pair_of_any(there, -direction * there.frame);
 
-    float cos_here = abs(dot(direction, s.normal)), cos_there = abs(dot(direction, there.normal));
+    float cos_here = catch_density(s, direction), cos_there = catch_density(there, direction);
     float towards_there = here.pdf * cos_there / distance_squared;
     float towards_here = away.pdf * frame * cos_here / distance_squared;
     float reverse = here.pdf_reverse * frame_probability(s, direction, -path.direction);
@@ -43,11 +51,10 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     float connects_there = (y.previous & VERTEX_STARTS) != 0u ? 1.0 : CONNECTION_SHARE;
     float by_backward = towards_there * (merging_there + connects_there * y.vcm + away.pdf_reverse * y.vc);
     float by_forward = towards_here * (merging_here + connects(path) * mis.vcm + reverse * mis.vc);
-    float weight = CONNECTION_SHARE / (CONNECTION_SHARE + by_backward + by_forward);
 
     float flux = forward_pass.path_flux * float(forward_pass.count) * float(end.y);  // one path and vertex stand for all
     Spectrum contribution = path.throughput * here.value * y.throughput * away.value *
-                            (adjoint_correction(there, light_direction, -direction) * weight * flux / distance_squared *
+                            (adjoint_correction(there, light_direction, -direction) * flux / distance_squared *
                              meeting_share(path, y.previous));
-    return shadow_ray(p, s, direction, distance, contribution);
+    return shadow_ray(p, s, direction, distance, contribution, (by_backward + by_forward) / CONNECTION_SHARE);
 }

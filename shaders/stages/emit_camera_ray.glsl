@@ -19,6 +19,9 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.pdf = 0.0;
     path.medium = receiver_start_medium();
     path.depth = 0u;
+#if HAS_SCATTERING
+    path.passage = 1.0;
+#endif
 #if BIDIRECTIONAL
     path.vcm = float(forward_pass.count) * ray.connect_pdf / (ray.density * float(size.x) * float(size.y));
     path.vc = 0.0;

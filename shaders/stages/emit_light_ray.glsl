@@ -23,6 +23,9 @@ Path emit_light_ray(uint index) {
     path.pdf = 0.0;
     path.medium = light_start_medium(light, ray.front);
     path.depth = 0u;
+#if HAS_SCATTERING
+    path.passage = 1.0;
+#endif
 #if HAS_PATH_FLAGS
     path.flags = PATH_STARTS;
 #endif

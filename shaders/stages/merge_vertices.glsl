@@ -24,7 +24,7 @@ void merge_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMi
         vec3 wi = light_direction * s.frame;
         bool same_surface = dot(decode_octahedral_16(y.normal), s.normal) > 0.7 && abs(dot(d, s.normal)) < 0.5 * radius;
         if (!same_surface || cosine * wi.z <= 0.0) continue;
-        SurfacePair pair = surface_pair(s.surface, s.context, s.wo, wi);
+        SurfacePair pair = scattering_pair(s, wi);
         float reverse = pair.pdf_reverse * frame_probability(s, light_direction, -path.direction);
         float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
         Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));

@@ -11,14 +11,14 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
     float frame = frame_probability(s, -path.direction, r.direction);
     if (is_black(pair.value) || !is_seen_from(s, r.direction) || !(frame > 0.0)) return no_shadow_ray();
     float importance = r.density * pixel_count() / r.pdf;  // of one pixel
-    float weight = 1.0;
+    float others = 0.0;
 #if BIDIRECTIONAL
-    float backward = importance * abs(dot(r.direction, s.normal)) / float(forward_pass.count);
-    weight = 1.0 / (1.0 + backward * (mis.merging + connects(path) * mis.vcm + pair.pdf_reverse * mis.vc));
+    float backward = importance * catch_density(s, r.direction) / float(forward_pass.count);
+    others = backward * (mis.merging + connects(path) * mis.vcm + pair.pdf_reverse * mis.vc);
 #endif
     Spectrum contribution = path.throughput * pair.value *
-                            (adjoint_correction(s, -path.direction, r.direction) / frame * importance * forward_pass.path_flux * weight);
-    ShadowRay shadow = shadow_ray(p, s, r.direction, r.distance, contribution);
+                            (adjoint_correction(s, -path.direction, r.direction) / frame * importance * forward_pass.path_flux);
+    ShadowRay shadow = shadow_ray(p, s, r.direction, r.distance, contribution, others);
     uvec2 size = uvec2(forward_pass.width, forward_pass.height);
     uvec2 pixel = min(uvec2(r.film * vec2(size)), size - 1u);
     shadow.pixel = pixel.y * size.x + pixel.x;
@@ -29,39 +29,46 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
 bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Counters counters, out ShadowRay shadow) {
     shadow = no_shadow_ray();
     float carried = luminance(path.throughput);
-    // cross_media
-#if HAS_MEDIA
-    if (path.medium != NO_RECORD) path.throughput *= medium_transmittance(path.medium, hit.t);
-#endif
-    if (hit.primitive == NO_RECORD) {
+    bool scatters = cross_medium(path, hit);
+    if (!scatters && hit.primitive == NO_RECORD) {
         float left = luminance(path.throughput);
         counters.absorbed += carried - left;
         counters.escaped += left;
         return false;
     }
-    SurfacePoint p = locate(hit, path.origin, path.direction);
-    ScatteringPoint s = shaded_point(p, path.direction, path.medium, true);
+    SurfacePoint p;
+    ScatteringPoint s;
+#if HAS_SCATTERING
+    if (scatters) {
+        p = volume_point(path.origin + hit.t * path.direction, path.direction);
+        s = volume_scattering_point(path.direction, path.medium, true);
+    } else
+#endif
+    {
+        p = locate(hit, path.origin, path.direction);
+        s = shaded_point(p, path.direction, path.medium, true);
+    }
     float flat_part = flat_probability(s, -path.direction);
     if (flat_part > 0.0 && (flat_part >= 1.0 || sample_1d(path.random) < flat_part)) flatten(s, path.direction);
 #if HAS_DISPERSION
     if (s.disperses) make_monochrome(path);
 #endif
-    bool is_delta = surface_is_delta(s.surface, s.context);
-    VertexMis mis = vertex_mis(path, p);
+    bool is_delta = is_delta_point(s);
+    VertexMis mis = vertex_mis(path, p, s);
 #if CONNECT_VERTICES || MERGE_VERTICES
-    if (!is_delta) store_vertex(path, path_index, p, hit, mis);
+    if (!is_delta) store_vertex(path, path_index, p, s, hit, mis);
 #endif
     // connect_receiver, scatter_surfaces
     ReceiverSample r = ReceiverSample(vec3(0, 0, 1), 0.0, vec2(0), 0.0, 0.0);
     if (!is_delta) r = receiver_connect(forward_pass.receiver, p.position, sample_2d(path.random), film_aspect());
     vec3 wi = r.direction * s.frame;
-    SurfaceEvent event = surface_event(s.surface, s.context, s.wo, wi, sample_3d(path.random));
-    if (r.pdf > 0.0 && wi.z * dot(r.direction, s.normal) > 0.0)
+    SurfaceEvent event = scattering_event(s, wi, sample_3d(path.random));
+    if (r.pdf > 0.0 && is_on_one_side(s, r.direction, wi))
         shadow = connect_receiver(path, p, s, r, event.pair, mis);
     if (!follow_sample(path, p, s, event, mis)) {
         counters.absorbed += carried;
         return false;
     }
     counters.absorbed += carried - luminance(path.throughput);
-    return continue_path(path, counters);
+    return continue_path(path, scatters, counters);
 }

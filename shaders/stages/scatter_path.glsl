@@ -13,17 +13,18 @@
 #include "stages/merge_vertices.glsl"
 #endif
 
-float power_heuristic(float pdf, float other) {
-    // In ratios, so that squares neither overflow nor vanish.
-    if (!(pdf > 0.0)) return 0.0;
-    float r = other / pdf;
-    return 1.0 / (1.0 + r * r);
+float passage(Path path) {
+#if HAS_SCATTERING
+    return path.passage;
+#else
+    return 1.0;
+#endif
 }
 
 // Radiance of `light` met by the path's ray, weighted against the other ways to bring it.
 Spectrum collect_light(Path path, uint light, LightHit hit) {
     Spectrum radiance = light_radiance(lights[light], path.direction, hit);
-    float weight = 1.0;
+    float others = 0.0;
 #if BIDIRECTIONAL
     bool alone = (path.flags & PATH_STARTS) != 0u;
 #else
@@ -34,12 +35,12 @@ Spectrum collect_light(Path path, uint light, LightHit hit) {
         if (other > 0.0) other *= light_selection_probability(light, path.reference);
 #if BIDIRECTIONAL
         float emission = light_pdf_emit(lights[light], scene_bounds(), path.direction, hit) * emitter_probability(light);
-        weight = 1.0 / (1.0 + other * path.vcm + emission * path.vc);
+        others = other * path.vcm / passage(path) + emission * path.vc;
 #else
-        weight = power_heuristic(path.pdf, other);
+        others = other / (path.pdf * passage(path));
 #endif
     }
-    return path.throughput * radiance * weight;
+    return path.throughput * radiance * mis_weight(others);
 }
 
 // Forward rays alone can bring whatever reaches the receiver from a surface that is not perfectly smooth.
@@ -72,13 +73,13 @@ ShadowRay connect_light(Path path, SurfacePoint p, ScatteringPoint s, LightSampl
     if (!(l.pdf > 0.0) || is_black(l.radiance) || is_black(pair.value)) return no_shadow_ray();
 #if BIDIRECTIONAL
     float by_hit = l.is_delta ? 0.0 : pair.pdf;
-    float emission = l.emission_pdf * emitter_probability(light) * abs(dot(l.direction, s.normal));
+    float emission = l.emission_pdf * emitter_probability(light) * catch_density(s, l.direction);
     float reverse = pair.pdf_reverse * frame_probability(s, l.direction, -path.direction);
-    float weight = l.pdf / (l.pdf + by_hit + emission * (connects(path) * mis.vcm + reverse * mis.vc));
+    float others = by_hit + emission * (connects(path) * mis.vcm + reverse * mis.vc);
 #else
-    float weight = l.is_delta ? 1.0 : power_heuristic(l.pdf, pair.pdf);
+    float others = l.is_delta ? 0.0 : pair.pdf;
 #endif
-    return shadow_ray(p, s, l.direction, l.distance, path.throughput * pair.value * l.radiance * (weight / l.pdf));
+    return shadow_ray(p, s, l.direction, l.distance, path.throughput * pair.value * l.radiance / l.pdf, others / l.pdf);
 }
 #endif
 
@@ -92,16 +93,18 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
 #if CONNECT_VERTICES
     vertex_shadow = no_shadow_ray();
 #endif
-    // cross_media
-#if HAS_MEDIA
-    if (path.medium != NO_RECORD) path.throughput *= medium_transmittance(path.medium, hit.t);
-#endif
+    bool scatters = cross_medium(path, hit);
     // collect_emission: of the primitive that is hit, or of all that surrounds the scene
-    bool escapes = hit.primitive == NO_RECORD;
+    bool escapes = !scatters && hit.primitive == NO_RECORD;
     SurfacePoint p;
     LightHit light_hit = LightHit(vec3(0), vec3(0), vec2(0), vec2(0));
     uint light = 0u, light_end = uint(INFINITE_LIGHT_COUNT);
-    if (!escapes) {
+    if (scatters) {
+#if HAS_SCATTERING
+        p = volume_point(path.origin + hit.t * path.direction, path.direction);
+        light_end = 0u;
+#endif
+    } else if (!escapes) {
         p = locate(hit, path.origin, path.direction);
         light = p.light;
         light_end = p.light + 1u;  // 0 where it is no light
@@ -114,12 +117,17 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
         counters.escaped += luminance(path.throughput);
         return false;
     }
-    ScatteringPoint s = scattering_point(p, path.direction, path.medium);
+    ScatteringPoint s;
+#if HAS_SCATTERING
+    if (scatters) s = volume_scattering_point(path.direction, path.medium, false);
+    else
+#endif
+        s = scattering_point(p, path.direction, path.medium);
 #if HAS_DISPERSION
     if (s.disperses) make_monochrome(path);
 #endif
-    bool is_delta = surface_is_delta(s.surface, s.context);
-    VertexMis mis = vertex_mis(path, p);
+    bool is_delta = is_delta_point(s);
+    VertexMis mis = vertex_mis(path, p, s);
     // connect_lights, scatter_surfaces
     LightSample l = no_light_sample();
 #if LIGHT_COUNT > 0
@@ -127,10 +135,10 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     if (!is_delta && !forward_brings(path)) l = sample_light(path, p.position, sampled_light);
 #endif
     vec3 wi = l.direction * s.frame;
-    SurfaceEvent event = surface_event(s.surface, s.context, s.wo, wi, sample_3d(path.random));
+    SurfaceEvent event = scattering_event(s, wi, sample_3d(path.random));
 #if LIGHT_COUNT > 0
     // No light where the shading normal and the surface disagree on which side it is.
-    if (wi.z * dot(l.direction, s.normal) > 0.0)
+    if (is_on_one_side(s, l.direction, wi))
         shadow = connect_light(path, p, s, l, sampled_light, event.pair, mis);
 #endif
 #if CONNECT_VERTICES
@@ -144,5 +152,5 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     if ((event.next.event & EVENT_STRAIGHT) == 0u) path.flags &= ~PATH_STARTS;
 #endif
     if (!follow_sample(path, p, s, event, mis)) return false;
-    return continue_path(path, counters);
+    return continue_path(path, scatters, counters);
 }

@@ -2,8 +2,8 @@
 #include "lib/events.glsl"
 #include "lib/vertex_grid.glsl"
 
-void store_vertex(inout Path path, uint path_index, SurfacePoint p, Hit hit, VertexMis mis) {
-    bool merges = MERGE_VERTICES == 1 && (path.flags & PATH_AFTER_NARROW) != 0u;
+void store_vertex(inout Path path, uint path_index, SurfacePoint p, ScatteringPoint s, Hit hit, VertexMis mis) {
+    bool merges = MERGE_VERTICES == 1 && (path.flags & PATH_AFTER_NARROW) != 0u && !in_volume(s);
 #if !CONNECT_VERTICES
     if (!merges) return;
 #endif
@@ -13,10 +13,10 @@ void store_vertex(inout Path path, uint path_index, SurfacePoint p, Hit hit, Ver
     v.throughput = path.throughput;
     v.vc = mis.vc;
     v.direction = encode_octahedral(-path.direction);
-    v.normal = encode_octahedral_16(p.geometric_normal);
+    v.normal = in_volume(s) ? path.medium : encode_octahedral_16(p.geometric_normal);
     v.instance = hit.instance;
     v.uv = hit.uv;
-    v.primitive = hit.primitive;
+    v.primitive = in_volume(s) ? NO_RECORD : hit.primitive;
     uint starts = (path.flags & PATH_STARTS) != 0u ? VERTEX_STARTS : 0u;
     uint monochrome = (path.flags & PATH_MONOCHROME) != 0u ? VERTEX_MONOCHROME : 0u;
     v.previous = light_vertex_link(path.vertices.x, starts | monochrome | (merges ? LIGHT_VERTEX_MERGES : 0u));

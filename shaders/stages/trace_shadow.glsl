@@ -4,6 +4,24 @@
 #include "lib/scattering.glsl"
 #include "lib/traversal.glsl"
 
+// Through the medium that the ray is in.
+void pass_medium(inout ShadowRay shadow, float distance) {
+#if HAS_MEDIA
+    if (shadow.medium != NO_RECORD) shadow.contribution *= medium_transmittance(shadow.medium, distance);
+#endif
+#if HAS_SCATTERING
+    if (medium_scatters(shadow.medium)) shadow.others *= medium_passage(shadow.medium, distance);
+#endif
+}
+
+Spectrum weighed(ShadowRay shadow) {
+#if HAS_SCATTERING
+    return shadow.contribution * mis_weight(shadow.others);
+#else
+    return shadow.contribution;
+#endif
+}
+
 Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
     if (!(shadow.t_max > 0.0)) return Spectrum(0);
     counters.shadow_rays++;
@@ -11,25 +29,23 @@ Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
     return find_occlusion(shadow.origin, shadow.direction, shadow.t_max) ? Spectrum(0) : shadow.contribution;
 #elif !HAS_STRAIGHT
     if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return Spectrum(0);
-    return shadow.contribution * medium_transmittance(shadow.medium, shadow.t_max);
+    pass_medium(shadow, shadow.t_max);
+    return weighed(shadow);
 #else
-    Spectrum left = shadow.contribution;
     float t_left = shadow.t_max;
     while (true) {
         Hit hit = find_hit(shadow.origin, shadow.direction, t_left);
         bool met = hit.primitive != NO_RECORD;
-#if HAS_MEDIA
-        if (shadow.medium != NO_RECORD) left *= medium_transmittance(shadow.medium, met ? hit.t : t_left);
-#endif
-        if (!met) return left;
+        pass_medium(shadow, met ? hit.t : t_left);
+        if (!met) return weighed(shadow);
         SurfacePoint p = locate(hit, shadow.origin, shadow.direction);
         if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
         ScatteringPoint s = scattering_point(p, shadow.direction, shadow.medium);
-        left *= surface_transparency(s.surface, s.context, s.wo);
-        if (is_black(left)) return Spectrum(0);
+        shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
+        if (is_black(shadow.contribution)) return Spectrum(0);
         vec3 origin = offset_origin(p.position, p.error, p.geometric_normal, shadow.direction);
         t_left = t_left < INFINITY ? t_left - dot(origin - shadow.origin, shadow.direction) : INFINITY;
-        if (!(t_left > 0.0)) return left;
+        if (!(t_left > 0.0)) return weighed(shadow);
         shadow.origin = origin;
         shadow.medium = scattering_medium(s, shadow.direction);
     }

@@ -16,7 +16,7 @@ constexpr double half_turn = 0.70710678118654752;
 // Something of everything: media, refraction, straight passage, rough and smooth, lights of three kinds.
 SceneBuilder varied_scene() {
     SceneBuilder s;
-    s.medium("glass", {{"ior", 1.5}, {"absorption", {0.2, 0.1, 0.4}}});
+    s.medium("glass", {{"ior", 1.5}, {"absorption", {0.2, 0.1, 0.4}}, {"scattering", {1, 2, 0.5}}});
     add_box(s, {4, 4, 4}, s.lambertian({0.7, 0.5, 0.3}), true, at(0, 0, 0));
     s.sphere(0.6, s.material({{"surface", {{"class", "dielectric"}, {"alpha", 0.2}}}, {"inside", "glass"}}),
              at(-0.8, -1.2, 0.3));

@@ -95,7 +95,7 @@ void check_mean(const Reference& reference, uint32_t passes, uint32_t seeds, dou
 }
 
 const Reference cornell = {"cornell_rgb", 4.4e-4}, plates = {"veach_mis", 2.0e-4},
-                furnace = {"furnace", 1.9e-5};
+                furnace = {"furnace", 1.9e-5}, cloud = {"media_iso", 2.1e-4};
 // Its unit of spectral radiance is that of an even spectrum of luminance 1.
 const Reference spectral_cornell = {"cornell_spectral", 1.1e-3, even_luminance()};
 
@@ -108,6 +108,7 @@ TEST_CASE("the Cornell box with its measured spectra looks as its reference") {
 TEST_CASE("glossy plates under lights of all sizes look as their reference") {
     check_reference(plates, 128, 16);
 }
+TEST_CASE("a cube of cloud looks as its reference") { check_reference(cloud, 64, 16); }
 TEST_CASE("spheres in a furnace look as their reference") { check_reference(furnace, 64, 16); }
 
 TEST_SUITE("long") {
@@ -116,6 +117,9 @@ TEST_SUITE("long") {
     }
     TEST_CASE("the mean of the glossy plates is that of their reference within 0.1 %") {
         check_mean(plates, 512, 16, 0.001);
+    }
+    TEST_CASE("the mean of the cloud is that of its reference within 0.1 %") {
+        check_mean(cloud, 512, 16, 0.001);
     }
     TEST_CASE("the mean of the furnace is that of its reference within 0.02 %") {
         check_mean(furnace, 512, 16, 0.0002);

@@ -173,6 +173,23 @@ TEST_CASE("both directions: schedules, batches and resumption give the same film
     CHECK(film.counters.forward_paths_a_pass < settings.width * settings.height);
 }
 
+TEST_CASE("light scattered in media: schedules, batches and resumption give the same film, bit for bit") {
+    SceneBuilder s;
+    s.medium("fog", {{"scattering", {0.2, 0.3, 0.4}}, {"phase", {{"class", "rayleigh"}}}});
+    s.medium("milk", {{"ior", 1.4}, {"scattering", {4, 5, 6}}, {"absorption", 0.2}});
+    add_box(s, {4, 4, 4},
+            s.material({{"surface", {{"class", "lambertian"}, {"reflectance", {0.7, 0.5, 0.3}}}},
+                        {"outside", "fog"}}),
+            true, at(0, 0, 0));
+    s.sphere(0.6,
+             s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "milk"}, {"outside", "fog"}}),
+             at(-0.6, -0.6, 0));
+    s.light({{"type", "point"}, {"intensity", 2}, {"color", {1, 0.5, 0.25}}}, at(1.2, 1.2, 1.2));
+    s.perspective(1.2, at(0, 0, 1.95));
+    Scene scene = compile_test_scene(s.import());
+    check_schedules(scene, settings_for(scene, Algorithm::bidirectional, 40, 24));
+}
+
 TEST_CASE("more paths than the wavefront holds at once") {
     Scene scene = compile_test_scene(caustic_scene());
     for (const Algorithm algorithm : {Algorithm::forward, Algorithm::bidirectional}) {

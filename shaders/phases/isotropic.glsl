@@ -1,0 +1,7 @@
+// Scatters equally into all directions.
+struct Isotropic {
+    uint unused;  // a record holds at least one member
+};
+
+float isotropic_value(Isotropic r, float cosine) { return 0.25 * INV_PI; }
+float isotropic_sample(Isotropic r, float u) { return 1.0 - 2.0 * u; }

@@ -1,0 +1,15 @@
+// Particles much smaller than the wavelength, unpolarized (Rayleigh 1871): 3 (1 + cos²) / (16 pi).
+struct Rayleigh {
+    uint unused;  // a record holds at least one member
+};
+
+float rayleigh_value(Rayleigh r, float cosine) { return (3.0 / 16.0 * INV_PI) * (1.0 + cosine * cosine); }
+
+// The cosine c with (c³ + 3 c + 4) / 8 = u, by Cardano's formula (Frisvad 2011, "Importance sampling the Rayleigh phase
+// function"); the larger of the two roots first, so that no digits cancel.
+float rayleigh_sample(Rayleigh r, float u) {
+    float v = 4.0 * u - 2.0;
+    float root = pow(abs(v) + sqrt(v * v + 1.0), 1.0 / 3.0);
+    float cosine = root - 1.0 / root;
+    return clamp(v < 0.0 ? -cosine : cosine, -1.0, 1.0);
+}
