@@ -36,7 +36,8 @@
     X(5, Absorber, absorber)           \
     X(6, Boundary, boundary)           \
     X(7, Principled, principled)       \
-    X(8, DiffuseTransmitter, diffuse_transmitter)
+    X(8, DiffuseTransmitter, diffuse_transmitter) \
+    X(9, ThinFilm, thin_film)
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)              \

@@ -24,6 +24,7 @@ const char* const modelled_extensions[] = {"ETD_optics",
                                            "KHR_materials_clearcoat",
                                            "KHR_materials_sheen",
                                            "KHR_materials_anisotropy",
+                                           "KHR_materials_iridescence",
                                            "KHR_materials_diffuse_transmission",
                                            "KHR_lights_punctual",
                                            "KHR_texture_transform",
@@ -31,8 +32,7 @@ const char* const modelled_extensions[] = {"ETD_optics",
                                            "EXT_mesh_gpu_instancing"};
 
 // Part of the scene format, so a scene may require them; for now they are read past, with a warning.
-const char* const planned_extensions[] = {"KHR_materials_iridescence", "KHR_materials_unlit",
-                                          "EXT_lights_ies"};
+const char* const planned_extensions[] = {"KHR_materials_unlit", "EXT_lights_ies"};
 
 bool is_among(std::span<const char* const> names, const std::string& name) {
     return std::any_of(names.begin(), names.end(), [&](const char* n) { return name == n; });

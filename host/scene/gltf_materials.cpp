@@ -41,7 +41,7 @@ double material_dispersion(const JsonAt& material) {
 // Names of an extension's members and of the parameters of class `principled` that they become; all have that
 // class's ranges and defaults.
 struct ExtensionMember {
-    enum Kind { factor, color, angle, texture } kind;
+    enum Kind { factor, color, angle, index, length, texture } kind;
     const char *member, *parameter;
 };
 struct MaterialExtension {
@@ -61,6 +61,13 @@ const std::vector<MaterialExtension>& surface_extensions() {
          {{M::factor, "anisotropyStrength", "anisotropy"},
           {M::angle, "anisotropyRotation", "anisotropy_rotation"},
           {M::texture, "anisotropyTexture", "anisotropy_texture"}}},
+        {"KHR_materials_iridescence",
+         {{M::factor, "iridescenceFactor", "iridescence"},
+          {M::texture, "iridescenceTexture", "iridescence_texture"},
+          {M::index, "iridescenceIor", "iridescence_ior"},
+          {M::length, "iridescenceThicknessMinimum", "iridescence_thickness_minimum"},
+          {M::length, "iridescenceThicknessMaximum", "iridescence_thickness_maximum"},
+          {M::texture, "iridescenceThicknessTexture", "iridescence_thickness_texture"}}},
         {"KHR_materials_diffuse_transmission",
          {{M::factor, "diffuseTransmissionFactor", "diffuse_transmission"},
           {M::texture, "diffuseTransmissionTexture", "diffuse_transmission_texture"},
@@ -94,6 +101,10 @@ void read_surface_extensions(GltfImport& import, const JsonAt& material, json& p
                 parameters[m.parameter] = number_array(*at, 3, 0, most);
             else if (m.kind == ExtensionMember::angle)
                 parameters[m.parameter] = number_value(*at);
+            else if (m.kind == ExtensionMember::index)
+                parameters[m.parameter] = number_value(*at, 1, 100);
+            else if (m.kind == ExtensionMember::length)
+                parameters[m.parameter] = number_value(*at, 0, 1e5);  // nm
             else
                 parameters[m.parameter] = number_value(*at, 0, 1);
         }

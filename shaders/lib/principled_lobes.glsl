@@ -2,6 +2,9 @@
 #include "lib/fresnel.glsl"
 #include "lib/microfacet_anisotropic.glsl"
 #include "lib/sheen.glsl"
+#ifndef ABSENT_principled_iridescence
+#include "lib/thin_film.glsl"
+#endif
 
 // Widths of GGX: one number where no material of the scene is anisotropic.
 #ifdef ABSENT_principled_anisotropy
@@ -33,7 +36,21 @@ struct PrincipledMaterial {
     Spectrum sheen;
     float sheen_most;   // greatest of it
     float sheen_roughness;
+#ifndef ABSENT_principled_iridescence
+    float iridescence;
+    float film, film_thickness;   // index, nm
+    float near;                   // index of the medium on the side of wo
+    Spectrum dielectric_index, metal_index;  // in air
+#endif
 };
+
+#ifndef ABSENT_principled_iridescence
+// Real index of what reflects f0 at normal incidence in air.
+Spectrum principled_index(Spectrum f0) {
+    Spectrum root = sqrt(clamp(f0, Spectrum(0), Spectrum(0.9999)));
+    return (1.0 + root) / (1.0 - root);
+}
+#endif
 
 PrincipledMaterial principled_material(Principled r, SurfaceContext c, float side) {
     PrincipledMaterial m;
@@ -70,6 +87,13 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c, float sid
         m.diffuse_transmitted = sent * min(m.eta * m.eta, 1.0);
         m.diffuse_reflected = (1.0 - through) * m.color + (sent - m.diffuse_transmitted);
     }
+#ifndef ABSENT_principled_iridescence
+    m.iridescence = clamp(r.iridescence, 0.0, 1.0);
+    m.film = r.iridescence_ior, m.film_thickness = r.iridescence_thickness_maximum;
+    m.near = side < 0.0 ? c.ior_below : c.ior_above;
+    m.dielectric_index = principled_index(m.f0 / max(m.f90, 1e-6));
+    m.metal_index = principled_index(m.color);
+#endif
     m.coat = clamp(r.clearcoat, 0.0, 1.0);
     m.coat_alpha = square(clamp(r.clearcoat_roughness, 0.0, 1.0));
     m.sheen = Spectrum(0), m.sheen_most = 0.0, m.sheen_roughness = r.sheen_roughness;
@@ -112,14 +136,29 @@ float schlick_bound(float f0, float f90, float alpha, bool is_smooth, float mu, 
 float principled_bound(PrincipledMaterial m, float mu, out float average) {
     float f0 = max_component(m.f0);
 #ifdef ABSENT_principled_anisotropy
-    return schlick_bound(f0, m.f90, m.alpha, m.smooth_facets, mu, average);
+    float widest = m.alpha;
+    float bound = schlick_bound(f0, m.f90, m.alpha, m.smooth_facets, mu, average);
 #else
-    float average_y;
+    float widest = m.alpha.x, average_y;
     float x = schlick_bound(f0, m.f90, m.alpha.x, m.smooth_facets, mu, average);
     float y = schlick_bound(f0, m.f90, m.alpha.y, m.smooth_facets, mu, average_y);
     average = max(average, average_y);
-    return max(x, y);
+    float bound = max(x, y);
 #endif
+#ifndef ABSENT_principled_iridescence
+    if (m.iridescence > 0.0) {
+        // The most that a film reflects at normal incidence, and towards grazing angles more than any film of index 1 to
+        // 2.5 on bases of 1 to 3; what rough facets add is less than the last term.
+        float a = (m.film - 1.0) / (m.film + 1.0), b = 0.0;
+        for (int i = 0; i < m.f0.length(); ++i)
+            b = max(b, abs((m.dielectric_index[i] - m.film) / (m.dielectric_index[i] + m.film)));
+        float most = square((a + b) / (1.0 + a * b)), tail = m.smooth_facets ? 0.04 : 0.04 + 0.1 * widest;
+        float film = most + (1.0 - most) * min(pow(max(1.0 - mu, 1e-7), 1.5) + tail, 0.999);
+        bound = mix(bound, m.f90 * film, m.iridescence);
+        average = mix(average, m.f90 * (most + (1.0 - most) * 2.0 / (2.5 * 3.5)), m.iridescence);
+    }
+#endif
+    return bound;
 }
 
 // What the coat leaves, and coat and sheen together, of light along two directions.
@@ -171,8 +210,28 @@ void principled_facet(PrincipledMaterial m, float cos_o, out Spectrum reflected,
         if (exact < 1.0)
             f_transmitter = min(exact * mix(m.tint, Spectrum(m.f90), (exact - normal) / (1.0 - normal)), Spectrum(m.f90));
     }
-    reflected = m.metal * mix(m.color, Spectrum(1), s) + m.opaque * f + m.transmitter * f_transmitter;
-    transmitted = m.transmitter * (1.0 - max_component(f_transmitter)) * m.color;
+    Spectrum f_metal = mix(m.color, Spectrum(1), s);
+    Spectrum passes = Spectrum(1.0 - max_component(f_transmitter));  // a coloured reflection leaves no other colour behind
+#ifndef ABSENT_principled_iridescence
+    if (m.iridescence > 0.0)
+        for (int i = 0; i < 3; ++i) {  // a loop, so that the code stands once
+            bool solid = i == 2 && !m.thin;
+            if (!((i == 0 ? m.metal : i == 1 ? m.opaque : m.transmitter) > 0.0)) continue;
+            float near = solid ? m.near : 1.0;
+            Spectrum base = i == 0 ? m.metal_index : solid ? Spectrum(m.near * m.eta) : m.dielectric_index;
+            Spectrum film = thin_film_reflectance(cos_o, near, Spectrum(m.film), m.film_thickness, base, Spectrum(0));
+            if (i == 0) f_metal = mix(f_metal, film, m.iridescence);
+            // Beyond the critical angle of a solid nothing else takes what is not reflected.
+            bool total = solid && (1.0 - cos_o) * (1.0 + cos_o) >= m.eta * m.eta;
+            if (i == 1) f = mix(f, film * m.f90, m.iridescence);
+            if (i == 2 && !total) {
+                f_transmitter = mix(f_transmitter, film * m.f90, m.iridescence);
+                passes = mix(passes, 1.0 - film * m.f90, m.iridescence);
+            }
+        }
+#endif
+    reflected = m.metal * f_metal + m.opaque * f + m.transmitter * f_transmitter;
+    transmitted = m.transmitter * passes * m.color;
 }
 
 // Probability of reflection at a facet.

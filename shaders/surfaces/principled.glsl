@@ -1,5 +1,5 @@
 // The metallic-roughness material of glTF 2.0 (specification, appendix B) with KHR_materials_ior, _transmission, _specular,
-// _anisotropy, _diffuse_transmission, _clearcoat and _sheen: a mix, by `metallic`, of a metal and a dielectric that is
+// _anisotropy, _iridescence, _diffuse_transmission, _clearcoat and _sheen: a mix, by `metallic`, of a metal and a dielectric that is
 // diffuse below (or lets light through, by `transmission`), under cloth fibres, under a coat of index 1.5.
 //
 // Differences from the appendix and the extensions, which leave energy to the implementer:
@@ -13,6 +13,8 @@
 // - Coat and sheen lie on both sides and scale what is below by min(p(wo), p(wi)), where 1 - p bounds their albedo from
 //   above: KHR_materials_sheen's albedo scaling. What the material emits they leave as it is, and a normal map bends the
 //   coat, too.
+// - An iridescent film reflects by lib/thin_film.glsl, exactly, on bases whose real index follows from their reflection at
+//   normal incidence in air; so it does under a coat, too.
 // - Where media differ, diffuse transmission keeps radiance over squared index: of what comes from the denser side
 //   only 1 / n² passes, and the rest is reflected.
 struct Principled {
@@ -34,6 +36,12 @@ struct Principled {
     float anisotropy;                       //: 0 in [0, 1]. alpha along the tangent is mix(alpha, 1, anisotropy²).
     float anisotropy_rotation;              //: 0 rad. Of that direction, from the tangent to the bitangent.
     TextureRef anisotropy_texture;          //: none data. Red, green: direction in [-1, 1]; blue multiplies anisotropy.
+    float iridescence;                      //: 0 in [0, 1]. Part of the surface that a thin film covers.
+    TextureRef iridescence_texture;         //: none data. Red multiplies iridescence.
+    float iridescence_ior;                  //: 1.3 in [1, 100]. Refractive index of the film.
+    float iridescence_thickness_minimum;    //: 100 in [0, 100000] nm. Of the film where the texture is 0.
+    float iridescence_thickness_maximum;    //: 400 in [0, 100000] nm. Where it is 1, or there is none.
+    TextureRef iridescence_thickness_texture;  //: none data. Green goes from the minimum to the maximum.
     float diffuse_transmission;             //: 0 in [0, 1]. Part of the diffuse light that goes through.
     TextureRef diffuse_transmission_texture;        //: none data. Alpha multiplies diffuse_transmission.
     vec3 diffuse_transmission_color;                //: [1, 1, 1] in [0, 1]. Linear color of that light.
@@ -56,6 +64,10 @@ Principled principled_resolve(Principled r, SurfaceContext c) {
     r.transmission *= texture_value(r.transmission_texture, c.uv0, c.uv1).r;
     r.specular *= texture_value(r.specular_texture, c.uv0, c.uv1).a;
     r.specular_color *= texture_value(r.specular_color_texture, c.uv0, c.uv1).rgb;
+    r.iridescence *= texture_value(r.iridescence_texture, c.uv0, c.uv1).r;
+    if (r.iridescence_thickness_texture.index != NO_RECORD)
+        r.iridescence_thickness_maximum = mix(r.iridescence_thickness_minimum, r.iridescence_thickness_maximum,
+                                              texture_value(r.iridescence_thickness_texture, c.uv0, c.uv1).g);
     r.diffuse_transmission *= texture_value(r.diffuse_transmission_texture, c.uv0, c.uv1).a;
     r.diffuse_transmission_color *= texture_value(r.diffuse_transmission_color_texture, c.uv0, c.uv1).rgb;
     r.clearcoat *= texture_value(r.clearcoat_texture, c.uv0, c.uv1).r;

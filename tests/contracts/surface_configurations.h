@@ -119,6 +119,29 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
               1,
               1,
               0.5}};
+    if (name == "thin_film") {
+        const nlohmann::json steel_eta = {2.9, 2.9, 2.6}, steel_k = {3.1, 3.3, 3.3};
+        return {
+            C{"soap", nlohmann::json::object(), 1, 1, 1.0},
+            C{"soap, rough", {{"alpha", 0.3}}, 1, 1, 1.0},
+            C{"oil on water, smooth", {{"ior", 1.47}, {"thickness", 350}}, 1, 1.33f, 1.0},
+            C{"coat against reflection, alpha .3",
+              {{"ior", 1.22}, {"thickness", 112}, {"alpha", 0.3}},
+              1,
+              1.5f},
+            C{"gap between glasses, alpha .4", {{"ior", 1}, {"thickness", 90}, {"alpha", 0.4}}, 1.5f, 1.6f},
+            C{"oxide on smooth steel under water",
+              {{"ior", 2.4}, {"thickness", 60}, {"eta", steel_eta}, {"k", steel_k}},
+              1.33f,
+              1},
+            C{"oxide on rough steel, textured",
+              {{"ior", 2.4},
+               {"thickness", 200},
+               {"thickness_texture", value(0, 0.3, 0, 1)},
+               {"eta", steel_eta},
+               {"k", steel_k},
+               {"alpha", 0.2}}}};
+    }
     if (name == "absorber") return {C{"absorber", nlohmann::json::object(), 1, 1, 0.0}};
     if (name == "boundary") return {C{"boundary", nlohmann::json::object(), 1.33f, 1, 1.0}};
     if (name == "principled") {

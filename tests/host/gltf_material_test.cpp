@@ -148,6 +148,13 @@ TEST_CASE("members of the surface extensions become parameters, each with its te
                                       {{"anisotropyStrength", 0.6},
                                        {"anisotropyRotation", -7.5},
                                        {"anisotropyTexture", {{"index", 0}}}}},
+                                     {"KHR_materials_iridescence",
+                                      {{"iridescenceFactor", 0.875},
+                                       {"iridescenceTexture", {{"index", 0}}},
+                                       {"iridescenceIor", 1.8},
+                                       {"iridescenceThicknessMinimum", 50},
+                                       {"iridescenceThicknessMaximum", 700},
+                                       {"iridescenceThicknessTexture", {{"index", 0}}}}},
                                      {"KHR_materials_diffuse_transmission",
                                       {{"diffuseTransmissionFactor", 0.25},
                                        {"diffuseTransmissionTexture", {{"index", 0}}},
@@ -167,9 +174,9 @@ TEST_CASE("members of the surface extensions become parameters, each with its te
     add_texture(b);
     const SceneDescription s = b.import();
     json p = s.materials.at(0).surface.parameters;
-    for (const char* name :
-         {"specular", "specular_color", "anisotropy", "diffuse_transmission", "diffuse_transmission_color",
-          "clearcoat", "clearcoat_roughness", "sheen_color", "sheen_roughness"}) {
+    for (const char* name : {"specular", "specular_color", "anisotropy", "iridescence",
+                             "iridescence_thickness", "diffuse_transmission", "diffuse_transmission_color",
+                             "clearcoat", "clearcoat_roughness", "sheen_color", "sheen_roughness"}) {
         CAPTURE(name);
         CHECK(p[std::string(name) + "_texture"] == json{{"index", 0}});
         p.erase(std::string(name) + "_texture");
@@ -180,6 +187,10 @@ TEST_CASE("members of the surface extensions become parameters, each with its te
                     {"specular_color", {4, 1, 0}},
                     {"anisotropy", 0.6},
                     {"anisotropy_rotation", -7.5},
+                    {"iridescence", 0.875},
+                    {"iridescence_ior", 1.8},
+                    {"iridescence_thickness_minimum", 50},
+                    {"iridescence_thickness_maximum", 700},
                     {"diffuse_transmission", 0.25},
                     {"diffuse_transmission_color", {0.1, 0.2, 0.3}},
                     {"clearcoat", 0.75},

@@ -59,4 +59,33 @@ TEST_SUITE("long") {
                  at(0.2, -1.5, 0.7));
         check_against_backward(s);
     }
+
+    TEST_CASE("algorithms agree: thin films on metal, on glass and on nothing, and iridescence") {
+        SceneBuilder s;
+        add_room(s);
+        add_lamp(s, 1.5);
+        s.sphere(0.3, s.black_emitter({6, 4, 3}), at(1.2, 1.2, 0.6));
+        s.sphere(0.5,
+                 s.surface({{"class", "thin_film"},
+                            {"ior", 2.2},
+                            {"thickness", 70},
+                            {"eta", {3, 3, 2.5}},
+                            {"k", 3.2},
+                            {"alpha", 0.2}}),
+                 at(-1.2, -1.4, -0.6));
+        s.medium("glass", {{"ior", 1.5}});
+        const auto on_glass = [&](double alpha) {
+            return s.material(
+                {{"surface", {{"class", "thin_film"}, {"ior", 1.8}, {"thickness", 400}, {"alpha", alpha}}},
+                 {"inside", "glass"}});
+        };
+        s.sphere(0.5, on_glass(0), at(0, -1.4, 0.3));
+        s.sphere(0.5, on_glass(0.3), at(1.2, -1.4, -0.6));
+        s.rectangle(1.4, 1.4, s.surface({{"class", "thin_film"}}), hanging(-0.8, 0.3, 0));
+        s.sphere(0.5,
+                 gltf_material(s, {{"KHR_materials_iridescence",
+                                    {{"iridescenceFactor", 1}, {"iridescenceThicknessMaximum", 300}}}}),
+                 at(0.1, -1.4, -1.2));
+        check_against_backward(s);
+    }
 }

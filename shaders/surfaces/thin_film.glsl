@@ -1,0 +1,124 @@
+// A film some hundred nanometres thick over a metal (eta and k) or, without eta, over the medium on the other side:
+// oxides, oil on water, anti-reflection coats, soap. Its colours come from interference (lib/thin_film.glsl). Smooth or, by
+// alpha, a GGX microfacet surface whose facets the film follows; one reflection or refraction at a facet is modelled.
+//
+// Nothing is absorbed in the film. Between media that match, or so nearly that refraction is not resolved, facets count as
+// smooth: a soap film.
+#include "lib/fresnel.glsl"
+#include "lib/microfacet.glsl"
+#include "lib/thin_film.glsl"
+
+struct ThinFilm {
+    SpectrumRef ior;               //: 1.33 in [0.1, 100] ior. Real refractive index of the film.
+    float thickness;               //: 300 in [0, 100000] nm. Of the film.
+    TextureRef thickness_texture;  //: none data. Green multiplies thickness.
+    SpectrumRef eta;               //: none in [0, inf). Real part of the index of a metal below. none = -1.
+    SpectrumRef k;                 //: 0 in [0, inf). Its extinction coefficient.
+    float alpha;                   //: 0 in [0, 1]. GGX width; below 1e-4 the surface is perfectly smooth.
+};
+
+ThinFilm thin_film_resolve(ThinFilm r, SurfaceContext c) {
+    r.thickness *= texture_value(r.thickness_texture, c.uv0, c.uv1).g;
+    return r;
+}
+
+bool thin_film_on_metal(ThinFilm r) { return max_component(spectrum_value(r.eta)) >= 0.0; }
+
+bool thin_film_is_delta(ThinFilm r, SurfaceContext c) {
+    return thin_film_on_metal(r) ? r.alpha < SMOOTH_ALPHA : interface_is_smooth(r.alpha, c.ior_above, c.ior_below);
+}
+
+// Reflected part at a facet; `near` and `far`: indices of the media on the ray's side and beyond.
+Spectrum thin_film_facet(ThinFilm r, float cos_o, float near, float far) {
+    bool metal = thin_film_on_metal(r);
+    Spectrum eta = metal ? spectrum_value(r.eta) : Spectrum(far);
+    Spectrum k = metal ? spectrum_value(r.k) : Spectrum(0);
+    return thin_film_reflectance(max(cos_o, 0.0), near, spectrum_value(r.ior), r.thickness, eta, k);
+}
+
+// The surface as a ray from above sees it.
+struct ThinFilmSide {
+    float near, far;
+    bool metal;
+    float eta;    // far over near
+    float scale;  // of what is transmitted: radiance over squared index is kept (Veach 1997, section 5.2)
+};
+
+ThinFilmSide thin_film_side(ThinFilm r, SurfaceContext c, float side) {
+    ThinFilmSide s;
+    s.near = side < 0.0 ? c.ior_below : c.ior_above;
+    s.far = side < 0.0 ? c.ior_above : c.ior_below;
+    s.metal = thin_film_on_metal(r);
+    s.eta = s.far / s.near;
+    s.scale = c.importance ? 1.0 : 1.0 / (s.eta * s.eta);
+    return s;
+}
+
+// Probability of reflection.
+float thin_film_reflection_part(ThinFilmSide s, Spectrum reflected) {
+    return s.metal ? 1.0 : clamp(brightness(reflected), 0.02, 0.98);
+}
+
+Spectrum thin_film_evaluate(ThinFilm r, ThinFilmSide s, vec3 wo, vec3 wi, out float pdf) {
+    pdf = 0.0;
+    bool reflects = wi.z > 0.0;
+    if (!reflects && s.metal) return Spectrum(0);
+    vec3 h = reflects ? reflection_normal(wo, wi) : refraction_normal(wo, wi, s.eta);
+    Spectrum f = thin_film_facet(r, dot(wo, h), s.near, s.far);
+    float part = thin_film_reflection_part(s, f);
+    float facet_pdf = reflects ? ggx_reflection_pdf(wo, h, r.alpha) : ggx_refraction_pdf(wo, wi, h, r.alpha, s.eta);
+    pdf = facet_pdf * (reflects ? part : 1.0 - part);
+    return (reflects ? f : (1.0 - f) * s.scale) * (facet_pdf * ggx_g1(abs(wi.z), r.alpha));
+}
+
+Spectrum thin_film_eval(ThinFilm r, SurfaceContext c, vec3 wo, vec3 wi) {
+    if (thin_film_is_delta(r, c)) return Spectrum(0);
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    float pdf;
+    wo.z *= side, wi.z *= side;
+    return thin_film_evaluate(r, thin_film_side(r, c, side), wo, wi, pdf);
+}
+
+float thin_film_pdf(ThinFilm r, SurfaceContext c, vec3 wo, vec3 wi) {
+    if (thin_film_is_delta(r, c)) return 0.0;
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    float pdf;
+    wo.z *= side, wi.z *= side;
+    thin_film_evaluate(r, thin_film_side(r, c, side), wo, wi, pdf);
+    return pdf;
+}
+
+BsdfSample thin_film_sample(ThinFilm r, SurfaceContext c, vec3 wo, vec3 u) {
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    wo.z *= side;
+    ThinFilmSide s = thin_film_side(r, c, side);
+    bool is_delta = thin_film_is_delta(r, c);
+    vec3 h = is_delta ? vec3(0, 0, 1) : ggx_sample_visible(wo, r.alpha, u.xy);
+    float cos_o = dot(wo, h);
+    Spectrum f = thin_film_facet(r, cos_o, s.near, s.far);
+    float part = thin_film_reflection_part(s, f);
+    bool reflects = u.z < part;
+    vec3 wi = 2.0 * cos_o * h - wo;
+    if (!reflects && !refract_direction(wo, h, cos_o, s.eta, wi)) return no_bsdf_sample();
+    if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
+
+    BsdfSample result;
+    result.event = reflects ? EVENT_REFLECT : EVENT_TRANSMIT;
+    if (is_delta) {
+        result.event |= EVENT_DELTA;
+        result.pdf = reflects ? part : 1.0 - part;
+        result.weight = (reflects ? f : (1.0 - f) * s.scale) / result.pdf;
+        if (!reflects && s.eta == 1.0) wi = -wo, result.event |= EVENT_STRAIGHT;
+    } else {
+        result.weight = thin_film_evaluate(r, s, wo, wi, result.pdf) / max(result.pdf, 1e-30);
+        if (!(result.pdf > 0.0)) return no_bsdf_sample();
+    }
+    result.wi = vec3(wi.xy, wi.z * side);
+    return result;
+}
+
+Spectrum thin_film_transparency(ThinFilm r, SurfaceContext c, vec3 wo) {
+    if (c.ior_above != c.ior_below || thin_film_on_metal(r)) return Spectrum(0);
+    return 1.0 - thin_film_facet(r, abs(wo.z), c.ior_above, c.ior_below);
+}
+bool thin_film_is_opaque(ThinFilm r, SurfaceContext c) { return c.ior_above != c.ior_below || thin_film_on_metal(r); }
