@@ -398,7 +398,7 @@ def films():
     s = Gltf(
         "films",
         "Colours of thin films, in wavelengths, before a bright surround. Above, chromium under an oxide of index 2.2 and 20, 40,"
-        " 60, 90 and 130 nm: straw, brown, violet, blue and pale yellow, as metals take them on when they are heated. Below, from the"
+        " 60, 90 and 130 nm: straw, brown, blue, pale blue and yellow, as metals take them on when they are heated. Below, from the"
         " left: soap films of 100, 300 and 500 nm around air, coloured in their rims; black plastic with glTF's"
         " iridescence of 400 nm; glass with a film of index 1.22 and 112 nm, which mirrors less than bare glass.",
     )
