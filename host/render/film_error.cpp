@@ -135,28 +135,47 @@ Plane shrink(const Neighbourhoods& near, const Plane& spread, const std::array<P
 }
 
 // Mean of the squared differences of the halves in units of the variance that is taken for theirs, over the
-// nearest pixels as far as these are not noise, else over a wider neighbourhood. `valid`: 1 where a pixel has
-// such a value.
-Plane pooled_ratio(const Neighbourhoods& near, const Plane& ratio, const Plane& valid) {
-    const float pixels_near = 2.25f * 9, pixels_wide = 2.25f * 49;  // that tents of radius 1 and 3 amount to
+// nearest pixels as far as these are not noise, else over a wider neighbourhood. Stratification does little
+// for a pixel that a silhouette or a highlight crosses, and much for the smooth ones beside it: a neighbour
+// counts as far as its spread is like the pixel's. `valid`: 1 where a pixel has such a value.
+Plane pooled_ratio(const Neighbourhoods& near, const FilmSums& film, const Plane& spread, const Plane& ratio,
+                   const Plane& valid) {
     const float prior = 2;  // pixels that the whole image counts for, and a ratio of 1 in the whole image
     double total_ratio = prior, total_valid = prior;
     for (size_t i = 0; i < ratio.size(); ++i)
         total_ratio += double(ratio[i]), total_valid += double(valid[i]);
     const float everywhere = float(total_ratio / total_valid);
-    const Plane sum = near.tent(ratio, 1), count = near.tent(valid, 1), wide_sum = near.tent(ratio, 3),
-                wide_count = near.tent(valid, 3);
-    Plane mean(ratio.size()), wide(ratio.size());
-    for (size_t i = 0; i < ratio.size(); ++i) {
-        wide[i] = (wide_sum[i] * pixels_wide + prior * everywhere) / (wide_count[i] * pixels_wide + prior);
-        mean[i] = count[i] > 0 ? sum[i] / count[i] : wide[i];
-    }
+    const int width = int(film.width), height = int(film.height);
+    // Sums over a tent of `radius`, which is 1 at the pixel itself.
+    const auto pool = [&](int x, int y, int radius) {
+        const size_t i = size_t(y) * film.width + size_t(x);
+        float sum = 0, count = 0;
+        for (int v = std::max(0, y - radius); v <= std::min(height - 1, y + radius); ++v)
+            for (int u = std::max(0, x - radius); u <= std::min(width - 1, x + radius); ++u) {
+                const size_t k = size_t(v) * film.width + size_t(u);
+                const auto [least, most] = std::minmax(spread[i], spread[k]);
+                if (!(least > 0)) continue;
+                const float tent = float((radius + 1 - std::abs(u - x)) * (radius + 1 - std::abs(v - y))) /
+                                   float((radius + 1) * (radius + 1));
+                const float weight = tent * least / most;
+                sum += weight * ratio[k], count += weight * valid[k];
+            }
+        return std::pair(sum, count);
+    };
+    Plane mean(ratio.size()), wide(ratio.size()), noise(ratio.size());
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const size_t i = size_t(y) * film.width + size_t(x);
+            const auto [sum, count] = pool(x, y, 2);
+            const auto [wide_sum, wide_count] = pool(x, y, 6);
+            wide[i] = (wide_sum + prior * everywhere) / (wide_count + prior);
+            mean[i] = count > 0 ? sum / count : wide[i];
+            // A square of one degree of freedom has twice the square of its mean for variance.
+            noise[i] = 2 * wide[i] * wide[i] / std::max(count, 1e-6f);
+        }
     const Plane total = near.tent(square(combine(mean, wide, [](float a, float b) { return a - b; })), 3);
-    for (size_t i = 0; i < ratio.size(); ++i) {
-        // A square of one degree of freedom has twice the square of its mean for variance.
-        const float noise = 2 * wide[i] * wide[i] / std::max(count[i] * pixels_near, 1e-6f);
-        mean[i] += (noise < total[i] ? noise / total[i] : 1.0f) * (wide[i] - mean[i]);
-    }
+    for (size_t i = 0; i < ratio.size(); ++i)
+        mean[i] += (noise[i] < total[i] ? noise[i] / total[i] : 1.0f) * (wide[i] - mean[i]);
     return mean;
 }
 
@@ -209,14 +228,16 @@ std::vector<glm::vec3> estimate_errors(const FilmSums& film) {
     }
     const auto shares = shrinkage(near, all, noise, float(passes));
     for (Plane& channel : spread) channel = shrink(near, channel, shares);
-    Plane ratio(count), valid(count);
+    Plane ratio(count), valid(count), total(count);
+    for (const Plane& channel : spread)
+        for (size_t i = 0; i < count; ++i) total[i] += channel[i];
     for (size_t i = 0; i < count; ++i)
         for (size_t c = 0; c < 3; ++c)
             if (spread[c][i] > 0) {
                 ratio[i] += std::min(halves[c][i] / spread[c][i], largest_square) / 3;
                 valid[i] += 1.0f / 3;
             }
-    const Plane factor = pooled_ratio(near, ratio, valid);
+    const Plane factor = pooled_ratio(near, film, total, ratio, valid);
     std::vector<glm::vec3> errors(count);
     for (size_t c = 0; c < 3; ++c) {
         const Plane bias = film.bias.empty() ? Plane(count) : squared_bias(near, film, int(c));

@@ -73,13 +73,15 @@ class Subject {
 
 struct Honesty {
     double rms_z = 0, within_one = 0, within_two = 0;  // of the values that vary at all
-    double estimate = 0;                               // root of estimated by true relMSE
-    double covered = 0;                                // images whose true relMSE lies below its bound
+    double rms_most = 0;  // of z without its largest thousandth: pixels whose light no sample has met
+    double estimate = 0;  // root of estimated by true relMSE
+    double covered = 0;   // images whose true relMSE lies below its bound
 };
 
 Honesty measure(Subject& subject, const std::string& name, uint32_t passes, uint32_t seeds) {
     Honesty h;
-    double count = 0, estimated = 0, actual = 0;
+    double estimated = 0, actual = 0;
+    std::vector<double> squares;
     for (uint32_t seed = 1; seed <= seeds; ++seed) {
         subject.renderer.restart(seed);
         subject.pass(passes);
@@ -90,7 +92,7 @@ Honesty measure(Subject& subject, const std::string& name, uint32_t passes, uint
             // What is seen directly and does not vary is the same in every run.
             if (std::fabs(d) <= 1e-6 * t && error <= 1e-6 * t) continue;
             const double z = d / error;
-            h.rms_z += z * z, ++count;
+            squares.push_back(z * z);
             h.within_one += std::fabs(z) <= 1, h.within_two += std::fabs(z) <= 2;
         }
         const double relmse = subject.true_relmse(l);
@@ -98,13 +100,21 @@ Honesty measure(Subject& subject, const std::string& name, uint32_t passes, uint
         estimated += error.mean_square, actual += relmse;
         h.covered += std::sqrt(relmse) <= error.bound() ? 1.0 / seeds : 0.0;
     }
-    h.rms_z = std::sqrt(h.rms_z / count), h.within_one /= count, h.within_two /= count;
+    const double count = double(squares.size());
+    std::sort(squares.begin(), squares.end());
+    for (size_t i = 0; i < squares.size(); ++i) {
+        h.rms_z += squares[i] / count;
+        if (i < squares.size() - squares.size() / 1000) h.rms_most += squares[i] / (0.999 * count);
+    }
+    h.rms_z = std::sqrt(h.rms_z), h.rms_most = std::sqrt(h.rms_most);
+    h.within_one /= count, h.within_two /= count;
     h.estimate = std::sqrt(estimated / actual);
-    MESSAGE(fmt::format(
-        "{}, {} passes, {} seeds: rms z {:.3f}, within 1 error {:.3f}, within 2 {:.3f}; relative error "
-        "{:.4f}, estimated {:.3f} times that, below the bound {:.3f}",
-        name, passes, seeds, h.rms_z, h.within_one, h.within_two, std::sqrt(actual / seeds), h.estimate,
-        h.covered));
+    MESSAGE(
+        fmt::format("{}, {} passes, {} seeds: rms z {:.3f}, without the largest 0.1 % {:.3f}, within 1 error "
+                    "{:.3f}, within 2 {:.3f}; relative error "
+                    "{:.4f}, estimated {:.3f} times that, below the bound {:.3f}",
+                    name, passes, seeds, h.rms_z, h.rms_most, h.within_one, h.within_two,
+                    std::sqrt(actual / seeds), h.estimate, h.covered));
     return h;
 }
 
@@ -186,8 +196,11 @@ TEST_SUITE("long") {
         const auto scene = reference_scene("veach_mis");
         if (!scene) return;
         Subject subject(*scene, 65536);
-        // After so few passes the errors are understated: measured 1.88.
-        check(measure(subject, "plates", 16, 64), {0.9, 2.0, 0.65, 0.93}, 0.85);
+        // Lights smaller than a pixel, missed by all of 16 samples, are in the largest thousandth: 1.4 with
+        // them.
+        const Honesty few = measure(subject, "plates", 16, 64);
+        check(few, {0.9, 1.9, 0.65, 0.93}, 0.85);
+        CHECK(few.rms_most < 1.1);
         check(measure(subject, "plates", 64, 64), {0.9, 1.25, 0.65, 0.93}, 0.85);
         check(measure(subject, "plates", 256, 64), {0.9, 1.1, 0.65, 0.93}, 0.85);
         CHECK(stops_rightly(subject, 0.1, 64) >= 0.87);
