@@ -21,7 +21,7 @@ const char* overview =
 struct RenderArguments {
     std::optional<std::string> passes, seconds, error, size;
     std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto", schedule = "auto",
-                vertex_memory = "256";
+                sampler = "sobol", vertex_memory = "256";
 };
 
 std::string quoted_command(int argc, const char* const* argv) {
@@ -75,6 +75,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
         ->add_option("--schedule", arguments.schedule,
                      "Whole paths in one kernel, or a kernel a stage (default: auto)")
         ->option_text("auto|fused|wavefront|by-class");
+    render->add_option("--sampler", arguments.sampler, "Where random numbers come from (default: sobol)")
+        ->option_text("sobol|independent");
     render->add_option("--seed", arguments.seed, "Seed of the random numbers (default: 0)")->option_text("N");
     render->add_option("--device", options.device, "Vulkan device (default: the best; see: etendue devices)")
         ->option_text("NAME|INDEX");
@@ -93,6 +95,17 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     return render;
 }
 
+ColorMode parse_color(const std::string& text) {
+    return parse_choice<ColorMode>(
+        text, "--color",
+        {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
+}
+
+SampleSequence parse_sampler(const std::string& text) {
+    return parse_choice<SampleSequence>(
+        text, "--sampler", {{"sobol", SampleSequence::sobol}, {"independent", SampleSequence::independent}});
+}
+
 void finish_render(RenderOptions& options, const RenderArguments& arguments, std::string command_line) {
     if (options.scene.empty()) fail_input("SCENE is empty (see etendue render --help)");
     if (arguments.passes)
@@ -107,9 +120,8 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
     options.algorithm = parse_algorithm(arguments.algorithm, "--algorithm");
     options.vertex_bytes = parse_mebibytes(arguments.vertex_memory, "--vertex-memory");
-    options.color = parse_choice<ColorMode>(
-        arguments.color, "--color",
-        {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
+    options.color = parse_color(arguments.color);
+    options.samples = parse_sampler(arguments.sampler);
     options.polarization = parse_choice<PolarizationMode>(
         arguments.polarization, "--polarization",
         {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});
@@ -143,7 +155,8 @@ CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::optional<std:
 
 struct BenchArguments {
     std::optional<std::string> seconds, size, reference_relmse;
-    std::string algorithms = "backward,forward,bidirectional,auto", seed = "0", vertex_memory = "256";
+    std::string algorithms = "backward,forward,bidirectional,auto", color = "auto", sampler = "sobol",
+                seed = "0", vertex_memory = "256";
 };
 
 CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& arguments) {
@@ -169,6 +182,8 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& argume
     bench->add_option("--receiver", options.receiver, "As for render")->option_text("NAME");
     bench->add_option("--environment", options.environment, "As for render")->option_text("FILE.hdr|exr");
     bench->add_option("--vertex-memory", arguments.vertex_memory, "As for render")->option_text("MIB");
+    bench->add_option("--color", arguments.color, "As for render")->option_text("auto|rgb|spectral");
+    bench->add_option("--sampler", arguments.sampler, "As for render")->option_text("sobol|independent");
     bench->add_option("--seed", arguments.seed, "First seed (default: 0)")->option_text("N");
     bench->add_option("--device", options.device, "As for render")->option_text("NAME|INDEX");
     bench->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
@@ -188,6 +203,8 @@ void finish_bench(BenchOptions& options, const BenchArguments& arguments) {
         fail_input("--reference: goes with one scene, not with {}", options.scenes.size());
     options.seed = parse_count(arguments.seed, "--seed", 0, INT32_MAX);
     options.vertex_bytes = parse_mebibytes(arguments.vertex_memory, "--vertex-memory");
+    options.color = parse_color(arguments.color);
+    options.samples = parse_sampler(arguments.sampler);
     options.algorithms = parse_algorithms(arguments.algorithms, "--algorithms");
 }
 

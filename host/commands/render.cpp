@@ -47,6 +47,7 @@ nlohmann::json checkpoint_identity(const RenderOptions& options, const Scene& sc
             {"size", fmt::format("{}x{}", size.width, size.height)},
             {"receiver", receiver.name},
             {"seed", options.seed},
+            {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
             {"algorithm", algorithm_name(options.algorithm)},
             {"color", scene.features.spectral ? "spectral" : "rgb"},
             {"device", device.description.name + " " + device.description.driver}};

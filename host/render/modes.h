@@ -28,4 +28,10 @@ enum class ColorMode {
     spectral,   // four wavelengths a pass
 };
 
+// Where the random numbers of paths come from.
+enum class SampleSequence {
+    sobol,        // Sobol' points, Owen-scrambled: the error falls faster than with independent numbers
+    independent,  // hashes
+};
+
 }  // namespace etendue

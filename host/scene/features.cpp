@@ -32,6 +32,7 @@ std::string Features::defines() const {
     define("HAS_SCATTERING", scattering);
     define("HAS_INTERFACES", interfaces);
     define("HAS_STRAIGHT", straight);
+    define("INDEPENDENT_SAMPLES", independent_samples);
     define("SPECTRAL", spectral);
     define("HAS_DISPERSION", spectral && dispersion);
     if (spectral) define("SPECTRUM_COUNT", spectrum_count);

@@ -21,6 +21,7 @@ struct Features {
     bool spectral = false;    // paths carry wavelengths instead of colours
     bool dispersion = false;  // some refractive index depends on the wavelength
     uint32_t spectrum_count = 0;
+    bool independent_samples = false;  // hashes take the place of Sobol' points
     bool light_tree = false;
     bool nodes_by_address = false;  // arrays too large for one binding
     bool primitives_by_address = false;

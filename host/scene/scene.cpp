@@ -36,6 +36,7 @@ Scene SceneCompiler::run() {
     out_.warnings = in_.warnings;
     add_spectrum({glm::vec3(1), {}}, SpectralKind::radiance);  // white light: lib/spectrum.glsl
     out_.cache_folder = options_.cache_folder;
+    out_.features.independent_samples = options_.samples == SampleSequence::independent;
     out_.sources.folder = options_.shaders;
     out_.registry = std::make_unique<ClassRegistry>(out_.sources);
     add_class_files();

@@ -5,6 +5,8 @@
 // Every pair of every pixel is a (0,2)-sequence over the sample index, so any 2^k consecutive samples that
 // start at a multiple of 2^k are stratified in all elementary intervals; pairs and pixels are independent of
 // one another. Numbers are multiples of 2^-24 in [0, 1).
+//
+// INDEPENDENT_SAMPLES: hashes in place of the points, for whoever wants errors to fall exactly as 1 / sqrt(samples).
 struct Sampler {
     uint index;       // of the sample in its pixel
     uint pixel_hash;  // of pixel and seed
@@ -60,6 +62,17 @@ Sampler start_forward_sampler(uint pass, uint index, uint count, uint seed) {
     return Sampler((pass >> 1) * count + index, hash_3d(uvec3(~0u, pass & 1u, seed)).x, 0u);
 }
 
+#if INDEPENDENT_SAMPLES
+vec2 sample_2d(inout Sampler s) {
+    uvec3 hashes = hash_3d(uvec3(s.pixel_hash, s.dimension, s.index));
+    s.dimension++;
+    return vec2(hashes.xy >> 8) * (1.0 / 16777216.0);
+}
+
+float sample_1d(inout Sampler s) {
+    return sample_2d(s).x;
+}
+#else
 vec2 sample_2d(inout Sampler s) {
     uvec3 seeds = hash_3d(uvec3(s.pixel_hash, s.dimension, 0u));
     s.dimension++;
@@ -74,6 +87,7 @@ float sample_1d(inout Sampler s) {
     uint index = bitfieldReverse(scramble_reversed(bitfieldReverse(s.index), seeds.x));
     return float(bitfieldReverse(scramble_reversed(index, seeds.y)) >> 8) * (1.0 / 16777216.0);
 }
+#endif
 
 // A pair that is stratified together, and one number more.
 vec3 sample_3d(inout Sampler s) {

@@ -1,4 +1,6 @@
 // The scrambled Sobol' sampler, on the device: stratification, uniformity, independence, convergence.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "tests/support/device_fixture.h"
@@ -17,9 +19,12 @@ struct Pair {
 // pairs[(pixel * samples + sample) * dimensions + dimension]; pixels lie in a row of 256 each. Samples are
 // those of the even passes, or of the odd ones.
 std::vector<Pair> draw_pairs(uint32_t pixels, uint32_t samples, uint32_t dimensions,
-                             uint32_t first_sample = 0, uint32_t seed = 0, uint32_t odd = 0) {
+                             uint32_t first_sample = 0, uint32_t seed = 0, uint32_t odd = 0,
+                             bool independent = false) {
     Buffer out(test_device(), uint64_t(pixels) * samples * dimensions * sizeof(Pair), "pairs");
-    const Kernel kernel = make_test_kernel("draw_pairs", R"(
+    const Kernel kernel = make_test_kernel("draw_pairs",
+                                           fmt::format("#define INDEPENDENT_SAMPLES {:d}\n", independent) +
+                                               R"(
         #include "lib/sampler.glsl"
         layout(local_size_x = 64) in;
         layout(scalar, set = 0) buffer Pairs { vec2 pairs[]; };
@@ -160,6 +165,28 @@ TEST_CASE(
     for (const Moments& m : {xx_moments, xy_moments, pixel_moments, half_moments}) {
         CAPTURE(m.mean);
         CHECK(z_test(m.mean, 240.0, m.standard_error()) > sidak_level(false_alarm, 4));
+    }
+}
+
+TEST_CASE(
+    "sampler: independent numbers are uniform, and pairs, pixels and halves independent, as random ones "
+    "are") {
+    const uint32_t samples = 65536;
+    const auto pairs = draw_pairs(2, samples, 2, 0, 5, 0, true),
+               odd = draw_pairs(2, samples, 2, 0, 5, 1, true);
+    Grid pair{32}, next_dimension{32}, next_pixel{32}, other_half{32}, next_sample{32};
+    for (uint32_t i = 0; i < samples; ++i) {
+        const Pair p = pairs[2 * i];
+        pair.add(p.x, p.y);
+        next_dimension.add(p.x, pairs[2 * i + 1].x);
+        next_pixel.add(p.x, pairs[2 * (samples + i)].x);
+        other_half.add(p.x, odd[2 * i].x);
+        if (i % 2 == 0) next_sample.add(p.x, pairs[2 * i + 2].x);
+    }
+    for (const Grid& grid : {pair, next_dimension, next_pixel, other_half, next_sample}) {
+        CHECK(grid.p_value() > sidak_level(false_alarm, 5));
+        // Points of a net would fill the cells evenly.
+        CHECK(1 - grid.p_value() > sidak_level(false_alarm, 5));
     }
 }
 

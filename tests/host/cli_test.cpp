@@ -41,12 +41,12 @@ TEST_CASE("a render without options runs 64 passes into the scene's name in the 
 
 TEST_CASE("every option of render is understood") {
     auto o = std::get<RenderOptions>(
-        parse({"render",         "a.gltf",  "-o",          "b c.exr",  "--error",      "1e-2",
-               "--size",         "640x480", "--receiver",  "left",     "--seed",       "9",
-               "--environment",  "sky.hdr", "--algorithm", "backward", "--color",      "rgb",
-               "--polarization", "off",     "--device",    "1",        "--checkpoint", "c",
-               "--resume",       "r",       "--stats",     "s.json",   "--shaders",    "dir",
-               "--aovs",         "--quiet"}));
+        parse({"render",         "a.gltf",  "-o",          "b c.exr",    "--error",      "1e-2",
+               "--size",         "640x480", "--receiver",  "left",       "--seed",       "9",
+               "--environment",  "sky.hdr", "--algorithm", "backward",   "--color",      "rgb",
+               "--polarization", "off",     "--device",    "1",          "--checkpoint", "c",
+               "--resume",       "r",       "--stats",     "s.json",     "--shaders",    "dir",
+               "--aovs",         "--quiet", "--sampler",   "independent"}));
     CHECK(o.output == "b c.exr");
     CHECK(o.error == 1e-2);
     CHECK(!o.passes);
@@ -57,6 +57,7 @@ TEST_CASE("every option of render is understood") {
     CHECK(o.environment == "sky.hdr");
     CHECK(o.algorithm == Algorithm::backward);
     CHECK(o.color == ColorMode::rgb);
+    CHECK(o.samples == SampleSequence::independent);
     CHECK(o.polarization == PolarizationMode::off);
     CHECK(o.device == "1");
     CHECK(o.checkpoint == "c");
@@ -105,6 +106,8 @@ TEST_CASE("wrong usage is one line that says what is allowed") {
     CHECK(complaint({"render", ""}) == "SCENE is empty (see etendue render --help)");
     CHECK(complaint({"render", "a.gltf", "--algorithm", "sideways"}) ==
           "--algorithm sideways: not available; allowed: auto, backward, forward, bidirectional");
+    CHECK(complaint({"render", "a.gltf", "--sampler", "halton"}) ==
+          "--sampler halton: not available; allowed: sobol, independent");
     CHECK(complaint({"render", "a.gltf", "-o", "a.jpg"}).ends_with("the name must end in .exr"));
     CHECK(complaint({"render", "a.gltf", "--passes"}) ==
           "--passes: value is missing (see etendue render --help)");
