@@ -19,7 +19,7 @@ const char* overview =
 
 // Arguments as text (host/cli_values.h).
 struct RenderArguments {
-    std::optional<std::string> passes, seconds, error, size;
+    std::optional<std::string> passes, seconds, error, size, spectral_bins;
     std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto", schedule = "auto",
                 sampler = "sobol", vertex_memory = "256";
 };
@@ -69,6 +69,10 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
         ->option_text("MIB");
     render->add_option("--color", arguments.color, "What a ray carries (default: auto)")
         ->option_text("auto|rgb|spectral");
+    render
+        ->add_option("--spectral-bins", arguments.spectral_bins,
+                     "Also write the spectrum, in N equal bins from 360 to 830 nm")
+        ->option_text("N");
     render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
         ->option_text("auto|off");
     render
@@ -121,6 +125,10 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.algorithm = parse_algorithm(arguments.algorithm, "--algorithm");
     options.vertex_bytes = parse_mebibytes(arguments.vertex_memory, "--vertex-memory");
     options.color = parse_color(arguments.color);
+    if (arguments.spectral_bins)
+        options.spectral_bins = uint32_t(parse_count(*arguments.spectral_bins, "--spectral-bins", 1, 470));
+    if (options.spectral_bins > 0 && options.color == ColorMode::rgb)
+        fail_input("--spectral-bins: goes with --color spectral or auto, not with rgb");
     options.samples = parse_sampler(arguments.sampler);
     options.polarization = parse_choice<PolarizationMode>(
         arguments.polarization, "--polarization",

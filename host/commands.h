@@ -25,6 +25,7 @@ struct SceneChoice {
     std::string receiver;               // name; empty = the first of the scene
     std::string device;                 // name, part of one, or index; empty = the best there is
     ColorMode color = ColorMode::automatic;
+    uint32_t spectral_bins = 0;  // of the image, besides its colours; 0 = none
     SampleSequence samples = SampleSequence::sobol;
     std::optional<ImageSize> size;  // else 512 rows, and columns by the camera's aspect ratio
 };

@@ -16,6 +16,7 @@ OpenedScene open_scene(const SceneChoice& choice) {
     options.shaders = choice.shaders;
     options.environment = choice.environment;
     options.color = choice.color;
+    options.spectral_image = choice.spectral_bins > 0;
     options.samples = choice.samples;
     options.cache_folder = default_cache_folder();
     opened.scene = compile_scene(*opened.device, description, options);

@@ -50,6 +50,7 @@ nlohmann::json checkpoint_identity(const RenderOptions& options, const Scene& sc
             {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
             {"algorithm", algorithm_name(options.algorithm)},
             {"color", scene.features.spectral ? "spectral" : "rgb"},
+            {"spectral-bins", options.spectral_bins},
             {"device", device.description.name + " " + device.description.driver}};
 }
 
@@ -62,12 +63,14 @@ void save_checkpoint(const std::filesystem::path& path, const nlohmann::json& id
     checkpoint.counters = to_json(film.counters);
     checkpoint.counters["choice"] = to_json(renderer.choice());
     checkpoint.arrays.push_back({"film", std::move(film.pixels)});
+    if (!film.bins.empty()) checkpoint.arrays.push_back({"bins", std::move(film.bins)});
     write_checkpoint(path, checkpoint);
 }
 
 void restore(const Checkpoint& checkpoint, const std::filesystem::path& path, Renderer& renderer) {
     FilmState film = renderer.state();
     film.pixels = checkpoint_array(checkpoint, path, "film", film.pixels.size());
+    if (!film.bins.empty()) film.bins = checkpoint_array(checkpoint, path, "bins", film.bins.size());
     film.passes = checkpoint.passes;
     film.counters = counters_from_json(checkpoint.counters);
     renderer.restore(film);
@@ -100,6 +103,7 @@ int render_command(const RenderOptions& given) {
     settings.algorithm = options.algorithm;
     settings.schedule = options.schedule;
     settings.vertex_bytes = options.vertex_bytes;
+    settings.spectral_bins = options.spectral_bins;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
     nlohmann::json identity;
     if (!options.checkpoint.empty() || !options.resume.empty())
@@ -151,16 +155,18 @@ int render_command(const RenderOptions& given) {
     Image image = renderer.develop();
     const RelativeError error = renderer.relative_error();
     if (options.aovs) renderer.add_aovs(image, aov_samples);
-    image.attributes = {{"scene", options.scene.string()},
-                        {"command", options.command_line},
-                        {"seed", double(options.seed)},
-                        {"passes", double(renderer.passes())},
-                        {"rays", double(all_rays(renderer.counters()))},
-                        {"seconds", renderer.seconds()},
-                        {"algorithm", std::string(algorithm_name(renderer.choice().algorithm))},
-                        {"device", device.description.name},
-                        {"driver", device.description.driver},
-                        {"version", std::string(ETENDUE_VERSION)}};
+    renderer.add_spectra(image);
+    image.attributes.merge(std::map<std::string, Attribute>{
+        {"scene", options.scene.string()},
+        {"command", options.command_line},
+        {"seed", double(options.seed)},
+        {"passes", double(renderer.passes())},
+        {"rays", double(all_rays(renderer.counters()))},
+        {"seconds", renderer.seconds()},
+        {"algorithm", std::string(algorithm_name(renderer.choice().algorithm))},
+        {"device", device.description.name},
+        {"driver", device.description.driver},
+        {"version", std::string(ETENDUE_VERSION)}});
     if (!options.aovs) remove_channels(image, "error.");
     write_exr(options.output, image);
     if (!options.stats.empty())

@@ -9,6 +9,7 @@
 #include <ImfInputFile.h>
 #include <ImfIntAttribute.h>
 #include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 
 #include <algorithm>
@@ -69,9 +70,17 @@ void write_attributes(Imf::Header& header, const std::map<std::string, Attribute
     }
 }
 
+// What the colours of a picture mean: linear Rec.709, and (1, 1, 1) is 1 cd/m².
+void write_photometry(Imf::Header& header, const Image& image) {
+    if (find_channel(image, "R") < 0 || find_channel(image, "G") < 0 || find_channel(image, "B") < 0) return;
+    Imf::addChromaticities(header, Imf::Chromaticities());  // those of Rec.709
+    Imf::addWhiteLuminance(header, 1);
+}
+
 std::map<std::string, Attribute> read_attributes(const Imf::Header& header) {
     std::map<std::string, Attribute> attributes;
     for (auto i = header.begin(); i != header.end(); ++i) {
+        if (std::string_view(i.name()) == "whiteLuminance") continue;  // write_photometry
         const Imf::Attribute& attribute = i.attribute();
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute))
             attributes[i.name()] = text->value();
@@ -124,6 +133,7 @@ void write_exr(const std::filesystem::path& path, const Image& image) {
         Imf::Header header(int(image.width), int(image.height));
         header.compression() = Imf::ZIP_COMPRESSION;
         write_attributes(header, image.attributes);
+        write_photometry(header, image);
         Imf::FrameBuffer buffer;
         for (size_t c = 0; c < image.channels.size(); ++c) {
             header.channels().insert(image.channels[c], Imf::Channel(Imf::FLOAT));

@@ -1,4 +1,5 @@
-// OpenEXR files: every channel of an Image as 32-bit float, ZIP compressed.
+// OpenEXR files: every channel of an Image as 32-bit float, ZIP compressed. Pictures (R, G, B) carry the
+// standard attributes chromaticities (Rec.709) and whiteLuminance (1 cd/m²).
 #pragma once
 #include <filesystem>
 

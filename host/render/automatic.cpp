@@ -29,6 +29,7 @@ Pilot run_pilot(Device& device, Scene& scene, RenderSettings settings, Algorithm
     settings.height = std::max(1u, uint32_t(settings.height * std::min(1.0, scale)));
     settings.algorithm = algorithm;
     settings.forward_paths = paths;
+    settings.spectral_bins = 0;
     settings.seed = ~settings.seed;  // independent of the image to come
     Renderer renderer(device, scene, settings);
     for (uint32_t i = 0; i < pilot_passes; ++i) renderer.render_passes(1);

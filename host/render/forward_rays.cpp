@@ -36,7 +36,8 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
           std::clamp(settings.forward_paths * settings.width * settings.height, 1.0, double(1 << 24)))),
       count_(all_),
       pass_(device, sizeof(ForwardPass), "ForwardPassTable"),
-      splats_(device, uint64_t(settings.width) * settings.height * 24, "Splats") {
+      splats_(device, uint64_t(settings.width) * settings.height * (scene.features.spectral ? 32 : 24),
+              "Splats") {
     splats_.fill(0);
     if (techniques.connect || techniques.merge) {
         const auto make = [&](const std::string& file, const BufferTable& table, const std::string& defines) {

@@ -115,6 +115,11 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     scene.features.film_by_address = film_->by_address();
     BufferTable film = film_->buffers();
     film["CounterSums"] = &counter_sums_;
+    scene.features.spectral_bins = scene.features.spectral ? settings.spectral_bins : 0;
+    if (scene.features.spectral_bins > 0) {
+        spectral_film_.emplace(device, settings.width * settings.height, settings.spectral_bins);
+        film.merge(spectral_film_->buffers());
+    }
     start_media_ = find_start_media(device, scene, settings.receiver,
                                     float(settings.width) / float(settings.height), techniques.forward);
     film["StartMedia"] = &start_media_;
@@ -150,6 +155,7 @@ void Renderer::render_passes(uint32_t count) {
 void Renderer::restart(uint32_t seed) {
     settings_.seed = pipeline_->settings.seed = seed;
     film_->clear();
+    if (spectral_film_) spectral_film_->clear();
     counter_sums_.fill(0);
     if (forward_) forward_->restart();
     counters_ = {};
@@ -213,10 +219,18 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
                  std::span(&aovs[0].albedo.x, 7 * pixels), 7);
 }
 
-FilmState Renderer::state() const { return {film_->read(), passes_, counters_}; }
+FilmState Renderer::state() const {
+    return {film_->read(), passes_, counters_,
+            spectral_film_ ? spectral_film_->read() : std::vector<std::byte>()};
+}
+
+void Renderer::add_spectra(Image& image) const {
+    if (spectral_film_) spectral_film_->add_to(image, passes_);
+}
 
 void Renderer::restore(const FilmState& state) {
     film_->write(state.pixels);
+    if (spectral_film_) spectral_film_->write(state.bins);
     passes_ = state.passes;
     counters_ = state.counters;
     if (forward_) forward_->resume(uint32_t(counters_.forward_paths_a_pass));

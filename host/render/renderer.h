@@ -14,6 +14,7 @@
 #include "host/image/image.h"
 #include "host/render/film.h"
 #include "host/render/modes.h"
+#include "host/render/spectral_film.h"
 #include "host/render/spectral_passes.h"
 #include "host/scene/scene.h"
 
@@ -41,6 +42,7 @@ struct RenderSettings {
     std::optional<AlgorithmChoice> choice;  // of an earlier run: taken instead of algorithm and forward_paths
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
     float merge_radius = 1;                       // of the first pass, in widths of a pixel; > 0
+    uint32_t spectral_bins = 0;  // of a spectral image, where paths carry wavelengths; 0 = none
     uint64_t binding_bytes = 0;  // a larger film is written through its address; 0 = what the device can bind
 };
 
@@ -65,6 +67,7 @@ struct FilmState {
     std::vector<std::byte> pixels;
     uint64_t passes = 0;
     RenderCounters counters;
+    std::vector<std::byte> bins;  // of the spectral image, if any
 };
 
 Schedule choose_schedule(const Scene& scene);
@@ -90,6 +93,8 @@ class Renderer {
     const AlgorithmChoice& choice() const { return choice_; }
 
     Image develop() const { return film_->develop(); }
+    // Adds the spectra of a spectral image, if it is one (SpectralFilm::add_to).
+    void add_spectra(Image& image) const;
     RelativeError relative_error() const { return film_->relative_error(); }
     // Adds albedo.RGB, normal.XYZ and depth.Z of what the pixels see, by `count` primary rays a pixel.
     void add_aovs(Image& image, uint32_t count);
@@ -108,6 +113,7 @@ class Renderer {
     RenderSettings settings_;
     Schedule schedule_;
     std::unique_ptr<Film> film_;
+    std::optional<SpectralFilm> spectral_film_;
     Buffer counter_sums_;
     Buffer start_media_;  // none where the scene has no media
     SpectralPasses spectra_;

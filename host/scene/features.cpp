@@ -45,6 +45,7 @@ std::string Features::defines() const {
     define("TEXELS_BY_ADDRESS", texels_by_address);
     define("ENVIRONMENT_TEXELS_BY_ADDRESS", environment_texels_by_address);
     define("FILM_BY_ADDRESS", film_by_address);
+    if (spectral_bins > 0) define("SPECTRAL_BINS", spectral_bins);
     define("TEXTURE_FORMATS", texture_formats);
     define("BVH_STACK_SIZE", bvh_stack_size);
     define("LIGHT_COUNT", light_count);

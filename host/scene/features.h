@@ -30,6 +30,7 @@ struct Features {
     bool texels_by_address = false;
     bool environment_texels_by_address = false;
     bool film_by_address = false;  // set by the renderer
+    uint32_t spectral_bins = 0;    // of a spectral image; set by the renderer
     uint32_t texture_formats = 7;  // of lib/textures.glsl, a bit each
     uint32_t bvh_stack_size = 64;  // references that a traversal can hold back
     uint32_t light_count = 0;      // finite and infinite lights

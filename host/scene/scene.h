@@ -61,6 +61,7 @@ struct SceneOptions {
     std::filesystem::path environment;   // image that takes the place of the scene's environment
     std::filesystem::path cache_folder;  // of compiled kernels; empty = none
     ColorMode color = ColorMode::automatic;
+    bool spectral_image = false;  // that is asked for: automatic color is spectral
     SampleSequence samples = SampleSequence::sobol;
     unsigned threads = 0;        // for building; 0 = all
     uint64_t binding_bytes = 0;  // arrays above this are read by address; 0 = what the device can bind

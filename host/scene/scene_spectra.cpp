@@ -50,7 +50,8 @@ void SceneCompiler::choose_color() {
     bool has_tables = false;
     for (const auto& [value, kind] : spectra_) has_tables |= value.table.has_value();
     out_.features.spectral =
-        options_.color == ColorMode::spectral || (options_.color == ColorMode::automatic && has_tables);
+        options_.color == ColorMode::spectral ||
+        (options_.color == ColorMode::automatic && (has_tables || options_.spectral_image));
     if (!out_.features.spectral) return;
     const double radiance_unit = even_luminance();
     for (const auto& [value, kind] : spectra_) {

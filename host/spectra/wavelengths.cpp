@@ -77,8 +77,10 @@ Wavelengths choose_wavelengths(uint64_t pass, uint32_t seed) {
         const double x = nm - first_nm;
         const int i = std::min(int(x), cells - 1);
         const glm::dvec3 weight = glm::mix(rgb_weights()[i], rgb_weights()[i + 1], x - i);
+        const double share = 1 / (4 * wavelength_pdf(nm) * even_luminance());
         w.nm[lane] = float(nm);
-        w.rgb[lane] = glm::vec3(weight / (4 * wavelength_pdf(nm) * even_luminance()));
+        w.rgb[lane] = glm::vec3(weight * share);
+        w.share[lane] = float(share);
     }
     return w;
 }

@@ -13,6 +13,7 @@ namespace etendue {
 struct Wavelengths {
     glm::vec4 nm;      // the first is the hero: the only one left behind dispersion
     glm::vec3 rgb[4];  // what one in each contributes to the pixel: density, mean and even_luminance included
+    glm::vec4 share;   // … to its radiance, W / (m² sr)
 };
 
 // Of pass `pass` of a run. Each of the four has the density wavelength_pdf, and they lie a quarter apart in

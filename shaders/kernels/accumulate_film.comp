@@ -3,12 +3,8 @@
 // Reads: path states, splats. Writes: film, splats, counters. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint first_pixel, tile_pixels, samples; };
-#include "lib/counters.glsl"
-#include "lib/film.glsl"
 #include "lib/wavefront.glsl"
-#if HAS_SPLATS
-#include "lib/splats.glsl"
-#endif
+#include "stages/record_sample.glsl"
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
@@ -19,18 +15,11 @@ void main() {
 #if SPECTRAL
             batch_pass = s;
 #endif
-            vec3 rgb = spectrum_rgb(path_states[s * tile_pixels + i].radiance);
-            bool finite = is_finite(rgb);
-            counters.non_finite += finite ? 0u : 1u;
-            if (!finite) rgb = vec3(0);
-#if HAS_SPLATS
-            rgb += take_splats(first_pixel + i);
-#endif
 #if MERGE_VERTICES
             vec3 bias = spectrum_rgb(path_states[s * tile_pixels + i].bias);
             if (is_finite(bias)) add_bias(pixel, bias);
 #endif
-            add_sample(pixel, rgb);
+            record_sample(pixel, first_pixel + i, path_states[s * tile_pixels + i].radiance, counters);
         }
         film_at(first_pixel + i) = pixel;
     }

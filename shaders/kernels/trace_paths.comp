@@ -16,11 +16,7 @@ layout(push_constant) uniform Push {
 #include "stages/emit_camera_ray.glsl"
 #include "stages/scatter_path.glsl"
 #include "stages/trace_shadow.glsl"
-#include "lib/counters.glsl"
-#include "lib/film.glsl"
-#if HAS_SPLATS
-#include "lib/splats.glsl"
-#endif
+#include "stages/record_sample.glsl"
 
 void main() {
     uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -55,19 +51,11 @@ void main() {
         path.radiance += trace_shadow(shadow, counters);
 #endif
         if (!alive) {
-            vec3 rgb = spectrum_rgb(path.radiance);
-            if (!is_finite(rgb)) {
-                counters.non_finite++;
-                rgb = vec3(0);
-            }
-#if HAS_SPLATS
-            rgb += take_splats(pixel);
-#endif
 #if MERGE_VERTICES
             vec3 bias = spectrum_rgb(path.bias);
             if (is_finite(bias)) add_bias(sum, bias);
 #endif
-            add_sample(sum, rgb);
+            record_sample(sum, pixel, path.radiance, counters);
             if (++sample_index == sample_count) {
                 film_at(pixel) = sum;
                 pixel += lanes;

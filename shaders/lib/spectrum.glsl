@@ -24,6 +24,7 @@ const uint TINTED_SPECTRUM = 0x80000000u;
 struct Wavelengths {
     vec4 nm;      // the first is the hero, the only one left behind dispersion
     vec3 rgb[4];  // what a radiance of one contributes to the pixel
+    vec4 share;   // the same to the radiance of the pixel over all wavelengths, W / (m^2 sr)
 };
 layout(scalar, set = 0) readonly buffer WavelengthTable { Wavelengths wavelengths[]; };  // of each pass of the batch
 layout(scalar, set = 0) readonly buffer SpectrumValues { vec4 spectrum_values[]; };      // SPECTRUM_COUNT of each pass

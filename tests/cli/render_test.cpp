@@ -189,3 +189,20 @@ TEST_CASE("inspect, classes and devices tell what there is") {
     CHECK(program.run({"--version"}).out.starts_with("etendue "));
     CHECK(program.run({"render", "--help"}).code == 0);
 }
+
+TEST_CASE("a spectral image has a channel a bin, and is resumed with them") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    REQUIRE(program.run(with({"--passes", "12", "--spectral-bins", "4"})).code == 0);
+    const Image whole = read_exr(program.folder / "out.exr");
+    CHECK(text(whole, "spectralLayoutVersion") == "1.0");
+    // Light of a colour lies on D65: the bins that hold red, green and blue are lit.
+    for (const char* name : {"S0.418,750000nm", "S0.536,250000nm", "S0.653,750000nm"}) {
+        REQUIRE(find_channel(whole, name) >= 0);
+        CHECK(channel(whole, name)[0] > 0);
+    }
+    REQUIRE(program.run(with({"--passes", "5", "--spectral-bins", "4", "--checkpoint", "state"})).code == 0);
+    REQUIRE(program.run(with({"--passes", "12", "--spectral-bins", "4", "--resume", "state"})).code == 0);
+    CHECK(read_exr(program.folder / "out.exr").values == whole.values);
+    CHECK(program.run(with({"--passes", "12", "--color", "spectral", "--resume", "state"})).code == 2);
+}

@@ -92,6 +92,8 @@ TEST_CASE("numbers that are none, out of range or not finite are refused") {
         CHECK(complaint({"render", "a.gltf", "--time", seconds}) != "no error");
     for (const char* mebibytes : {"0", "-1", "1.5", "64M", "99999999"})
         CHECK(complaint({"render", "a.gltf", "--vertex-memory", mebibytes}) != "no error");
+    for (const char* bins : {"0", "-1", "1.5", "471", "many"})
+        CHECK(complaint({"render", "a.gltf", "--spectral-bins", bins}) != "no error");
     for (const char* size : {"640", "0x480", "640x", "x480", "640x480x3", "-4x4", "70000x4"})
         CHECK(complaint({"render", "a.gltf", "--size", size}) != "no error");
     for (const char* limit : {"0", "nan", "abc"})
@@ -106,6 +108,8 @@ TEST_CASE("wrong usage is one line that says what is allowed") {
     CHECK(complaint({"render", ""}) == "SCENE is empty (see etendue render --help)");
     CHECK(complaint({"render", "a.gltf", "--algorithm", "sideways"}) ==
           "--algorithm sideways: not available; allowed: auto, backward, forward, bidirectional");
+    CHECK(complaint({"render", "a.gltf", "--spectral-bins", "4", "--color", "rgb"}) ==
+          "--spectral-bins: goes with --color spectral or auto, not with rgb");
     CHECK(complaint({"render", "a.gltf", "--sampler", "halton"}) ==
           "--sampler halton: not available; allowed: sobol, independent");
     CHECK(complaint({"render", "a.gltf", "-o", "a.jpg"}).ends_with("the name must end in .exr"));

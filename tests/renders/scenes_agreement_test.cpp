@@ -13,9 +13,26 @@ using namespace etendue;
 
 namespace {
 
-// Scenes whose smooth water and glass hide a small lamp from all rays but the one backward ray in some
-// thousand that hits it: passes that these take.
-const std::map<std::string, uint32_t> backward_passes = {{"caustic_box", 16384}, {"pool", 32768}};
+// Smooth water and glass hide the small lamps of these scenes from all rays but the one backward ray in some
+// thousand that hits it: as they are, images agree within a noise of per cents, after many passes. So they are
+// compared a second time with lamps so many times as wide, of the same radiance.
+struct HiddenLamp {
+    float wider;
+    uint32_t backward, forward, bidirectional;  // passes as they are
+    double largest_error;
+};
+const std::map<std::string, HiddenLamp> hidden_lamps = {{"caustic_box", {8, 16384, 128, 1024, 0.02}},
+                                                        {"pool", {10, 16384, 2048, 64, 0.04}}};
+
+void widen_lamp(SceneDescription& scene, float factor) {
+    const auto lamp = std::find_if(scene.meshes.begin(), scene.meshes.end(),
+                                   [](const MeshDescription& mesh) { return mesh.name == "lamp"; });
+    REQUIRE(lamp != scene.meshes.end());
+    for (glm::vec3& position : lamp->positions) {  // lies flat around the axis x = z = 0
+        position.x *= factor;
+        position.z *= factor;
+    }
+}
 
 std::vector<std::filesystem::path> scene_files() {
     std::vector<std::filesystem::path> files;
@@ -61,9 +78,17 @@ TEST_CASE("algorithms agree: every scene in scenes/" * doctest::test_suite("long
             c.width = 32, c.height = 24, c.seeds = 16;
             c.largest_error = 0.02;  // glass hides lamps from forward rays, too
             if (name == "materials") c.forward = 512;
-            if (const auto passes = backward_passes.find(name); passes != backward_passes.end())
-                c.backward = passes->second;
-            Scene scene = compile_test_scene(import_gltf(file));
+            SceneDescription description = import_gltf(file);
+            if (const auto hidden = hidden_lamps.find(name); hidden != hidden_lamps.end()) {
+                const HiddenLamp& h = hidden->second;
+                Comparison long_one = c;
+                long_one.backward = h.backward, long_one.forward = h.forward;
+                long_one.bidirectional = h.bidirectional, long_one.largest_error = h.largest_error;
+                Scene as_it_is = compile_test_scene(description);
+                check_against_backward(as_it_is, long_one);
+                widen_lamp(description, h.wider);
+            }
+            Scene scene = compile_test_scene(description);
             if (name == "prism")
                 compare_above_prism(scene, c);
             else

@@ -1,0 +1,35 @@
+// The film of a spectral image: the spectrum of every pixel in equal bins over the visible range (first_nm to
+// last_nm), twin of shaders/lib/spectral_film.glsl.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "host/gpu/buffer.h"
+#include "host/gpu/kernel.h"
+#include "host/image/image.h"
+
+namespace etendue {
+
+class SpectralFilm {
+  public:
+    SpectralFilm(Device& device, uint32_t pixels, uint32_t bins);
+    BufferTable buffers() const;
+    void clear();
+    std::vector<std::byte> read() const;
+    void write(const std::vector<std::byte>& state);  // of a film of the same size
+
+    // Adds a channel a bin, the mean over `passes` of the spectral radiance in the bin, W / (m² sr nm), and
+    // the attributes of the layout of Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral
+    // Images".
+    void add_to(Image& image, uint64_t passes) const;
+
+  private:
+    uint32_t pixels_, bins_;
+    Buffer sums_, address_;
+};
+
+// "S0.550,000000nm": of a bin by the wavelength in its middle.
+std::string spectral_channel(uint32_t bin, uint32_t bins);
+
+}  // namespace etendue

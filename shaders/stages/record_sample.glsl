@@ -1,0 +1,22 @@
+// The radiance of a finished backward path becomes the next sample of its pixel, with what forward rays have brought there in
+// the same pass, in the colours of the film and in the bins of a spectral image. What is not finite counts as black.
+#include "lib/counters.glsl"
+#include "lib/film.glsl"
+#include "lib/spectral_film.glsl"
+#if HAS_SPLATS
+#include "lib/splats.glsl"
+#endif
+
+void record_sample(inout FilmPixel film, uint pixel, Spectrum radiance, inout Counters counters) {
+    if (!is_finite(spectrum_rgb(radiance))) {
+        counters.non_finite++;
+        radiance = Spectrum(0);
+    }
+#if HAS_SPLATS
+    radiance += take_splats(pixel);
+#endif
+#if SPECTRAL_BINS > 0
+    add_to_bins(pixel, radiance);
+#endif
+    add_sample(film, spectrum_rgb(radiance));
+}
