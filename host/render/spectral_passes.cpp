@@ -14,7 +14,7 @@ SpectralPasses::SpectralPasses(Device& device, const Scene& scene) : scene_(scen
     if (!scene.features.spectral) return;
     wavelengths_ = Buffer(device, most_passes * sizeof(Wavelengths), "WavelengthTable");
     values_ = Buffer(device, most_passes * scene.spectra.size() * sizeof(glm::vec4), "SpectrumValues");
-    colors_ = create_buffer(device, color_spectra(), "ColorSpectra");
+    colors_ = Buffer(device, color_spectra_count * sizeof(glm::vec3), "ColorSpectra");
 }
 
 BufferTable SpectralPasses::buffers() const {
@@ -26,6 +26,10 @@ uint32_t SpectralPasses::capacity() const { return scene_.features.spectral ? mo
 
 void SpectralPasses::write(uint64_t first, uint32_t count, uint32_t seed) {
     if (!scene_.features.spectral) return;
+    if (scene_.reads_color_spectra && !has_colors_) {  // which take a quarter of a second
+        colors_.write(color_spectra().data(), colors_.bytes());
+        has_colors_ = true;
+    }
     std::vector<Wavelengths> wavelengths;
     std::vector<glm::vec4> values;
     for (uint32_t pass = 0; pass < count; ++pass) {

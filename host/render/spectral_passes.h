@@ -20,6 +20,7 @@ class SpectralPasses {
   private:
     const Scene& scene_;
     Buffer wavelengths_, values_, colors_;
+    bool has_colors_ = false;  // written into colors_, once a kernel reads them
 };
 
 }  // namespace etendue

@@ -191,7 +191,10 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
     scene.kernels.push_back({shader.name, shader.from_cache, shader.seconds, shader.spirv.size() * 4});
     BufferTable table = buffers;
     for (const auto& [name, buffer] : scene.buffers) table.emplace(name, &buffer);
-    return Kernel(device, shader, table);
+    Kernel kernel(device, shader, table);
+    for (const auto& block : kernel.layout().blocks)
+        scene.reads_color_spectra |= block.name == "ColorSpectra";
+    return kernel;
 }
 
 Kernel make_color_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,

@@ -49,6 +49,7 @@ struct Scene {
     // That records refer to, radiances in units of even_luminance; the first is white light. Empty in
     // colours.
     std::vector<SpectralTable> spectra;
+    bool reads_color_spectra = false;  // some kernel does, so that they must be there (host/spectra/color.h)
     std::optional<bool> has_narrow_materials;  // once asked: are any marked MaterialFlag::narrow?
     double bvh_seconds = 0, bvh_cost = 0;
     uint32_t bvh_depth = 0;

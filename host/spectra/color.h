@@ -34,6 +34,7 @@ SpectralTable smooth_spectrum(const glm::dvec3& coefficients);
 // next two channels (cyclically) to it, along z its level g: z = sqrt(g / 2) below 1/2, 1 - sqrt((1 - g) / 2)
 // above.
 constexpr uint32_t color_lattice = 24;  // points an axis
+constexpr size_t color_spectra_count = 3 * size_t(color_lattice) * color_lattice * color_lattice;
 const std::vector<glm::vec3>& color_spectra();
 
 // The scale of radiances on the device: the luminance of a radiance of 1 W / (m² sr nm) at all wavelengths,

@@ -82,7 +82,9 @@ Spectrum radiance_of_rgb(vec3 rgb) {
 
 Spectrum spectrum_value(SpectrumRef ref) {
     Spectrum value = spectrum_values[batch_pass * SPECTRUM_COUNT + (ref.table & ~TINTED_SPECTRUM)];
+#if HAS_TEXTURES || HAS_VERTEX_ATTRIBUTES
     if ((ref.table & TINTED_SPECTRUM) != 0u) value *= factor_of_rgb(ref.rgb);
+#endif
     return value;
 }
 

@@ -14,8 +14,8 @@ using namespace etendue;
 namespace {
 
 // Smooth water and glass hide the small lamps of these scenes from all rays but the one backward ray in some
-// thousand that hits it: as they are, images agree within a noise of per cents, after many passes. So they are
-// compared a second time with lamps so many times as wide, of the same radiance.
+// thousand that hits it: as they are, images agree within a noise of per cents, after many passes. So they
+// are compared a second time with lamps so many times as wide, of the same radiance.
 struct HiddenLamp {
     float wider;
     uint32_t backward, forward, bidirectional;  // passes as they are
