@@ -40,7 +40,7 @@ vec3 spectrum_rgb(Spectrum s) {
 }
 
 float luminance(Spectrum s) { return luminance(spectrum_rgb(s)); }
-// A mean that samplers weigh choices by.
+// A mean that samplers weigh choices by, and that importance is counted in.
 float brightness(Spectrum s) { return dot(s, vec4(0.25)); }
 float max_component(Spectrum s) { return max(max(s.x, s.y), max(s.z, s.w)); }
 

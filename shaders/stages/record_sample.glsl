@@ -8,15 +8,19 @@
 #endif
 
 void record_sample(inout FilmPixel film, uint pixel, Spectrum radiance, inout Counters counters) {
-    if (!is_finite(spectrum_rgb(radiance))) {
+    vec3 rgb = spectrum_rgb(radiance);
+    if (!is_finite(rgb)) {
         counters.non_finite++;
         radiance = Spectrum(0);
+        rgb = vec3(0);
     }
 #if HAS_SPLATS
-    radiance += take_splats(pixel);
+    Spectrum splats = take_splats(pixel);
+    radiance += splats;
+    rgb += spectrum_rgb(splats);
 #endif
 #if SPECTRAL_BINS > 0
     add_to_bins(pixel, radiance);
 #endif
-    add_sample(film, spectrum_rgb(radiance));
+    add_sample(film, rgb);
 }

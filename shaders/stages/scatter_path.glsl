@@ -114,7 +114,7 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     for (; light < light_end; ++light) path.radiance += collect_light(path, light, light_hit);
 #endif
     if (escapes) {
-        counters.escaped += luminance(path.throughput);
+        counters.escaped += brightness(path.throughput);
         return false;
     }
     ScatteringPoint s;
