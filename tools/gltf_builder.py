@@ -46,10 +46,12 @@ class Gltf:
         self.extensions = {"ETD_optics"}
 
     # Materials. `surface` is a class of ETD_optics with its parameters; `glowing` adds emission.
-    def surface(self, name, class_name, inside=None, **parameters):
+    def surface(self, name, class_name, inside=None, outside=None, **parameters):
         optics = {"surface": {"class": class_name, **parameters}}
         if inside:
             optics["inside"] = inside
+        if outside:
+            optics["outside"] = outside
         return self._material({"name": name, "extensions": {"ETD_optics": optics}})
 
     def principled(

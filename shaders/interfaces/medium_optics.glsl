@@ -8,6 +8,7 @@
 //                                                   of `distance`, by two numbers spread evenly over [0,1)
 //   float    NAME_passage(R r, float distance)      transmittance of an average lane
 //   float    NAME_mean_extinction(R r)              extinction coefficient of an average lane, 1/m
+//   Spectrum NAME_scattering(R r)                   scattering coefficient, 1/m
 //   uint     NAME_phase(R r)                        RecordRef of the phase function
 //
 // Passage and mean extinction serve to weigh ways to make a path against each other (lib/mis.glsl): they are the same for every
@@ -91,6 +92,16 @@ float medium_mean_extinction(uint ref) {
     float result = 0.0;
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_mean_extinction(name##_record(record_index(ref))); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+Spectrum medium_scattering(uint ref) {
+    Spectrum result = Spectrum(0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_scattering(name##_record(record_index(ref))); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }

@@ -34,7 +34,7 @@ float pixel_count() { return float(forward_pass.width) * float(forward_pass.heig
 struct VertexMis {
     float vcm;
     float vc;
-    float merging;  // pi r² times the number of forward paths; 0 where the path's own side forbids merging
+    float merging;  // merge_size times the number of forward paths; 0 where the path's own side forbids merging
 };
 
 #if !BIDIRECTIONAL
@@ -47,9 +47,13 @@ float merge_radius(vec3 position) {
     float scale = min(forward_pass.merge_scale, 0.05 / max(slope, 1e-6));
     return scale * receiver_footprint(forward_pass.receiver, position, film_aspect());
 }
-float merge_density(vec3 position) { return PI * square(merge_radius(position)) * float(forward_pass.count); }
+// Within it vertices merge: a disk of a surface, m², or a ball of a medium, m³.
+float merge_size(bool in_volume, float radius) { return PI * square(radius) * (in_volume ? 4.0 / 3.0 * radius : 1.0); }
+float merge_density(bool in_volume, vec3 position) {
+    return merge_size(in_volume, merge_radius(position)) * float(forward_pass.count);
+}
 #else
-float merge_density(vec3 position) { return 0.0; }
+float merge_density(bool in_volume, vec3 position) { return 0.0; }
 #endif
 
 // Whether the edge between a vertex that merges and the next one towards the receiver is short enough to ask for merging.
@@ -106,12 +110,12 @@ VertexMis vertex_mis(Path path, SurfacePoint p, ScatteringPoint s) {
     float distance_squared = dot(d, d);
 #if FORWARD
     m.vcm = path.vcm * to_area * (starts ? start_connection_pdf(path, p.position) : distance_squared);
-    m.merging = after_narrow && !in_volume(s) ? merge_density(p.position) : 0.0;
+    m.merging = after_narrow ? merge_density(in_volume(s), p.position) : 0.0;
     bool merged_before = is_narrow(p.material) || is_short_edge(path.reference, p.position);
 #else
     m.vcm = path.vcm * to_area * (starts && (path.flags & PATH_PARALLEL) != 0u ? 1.0 : distance_squared);
     bool merges = starts || after_narrow || is_short_edge(p.position, path.reference);
-    m.merging = merges && !in_volume(s) ? merge_density(p.position) : 0.0;
+    m.merging = merges ? merge_density(in_volume(s), p.position) : 0.0;
     bool merged_before = is_narrow(p.material);
 #endif
 #if HAS_SCATTERING

@@ -26,4 +26,6 @@ float homogeneous_passage(Homogeneous r, float distance) { return brightness(hom
 
 float homogeneous_mean_extinction(Homogeneous r) { return brightness(homogeneous_extinction(r)); }
 
+Spectrum homogeneous_scattering(Homogeneous r) { return spectrum_value(r.scattering); }
+
 uint homogeneous_phase(Homogeneous r) { return r.phase.ref; }

@@ -46,7 +46,7 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     float reverse = here.pdf_reverse * frame_probability(s, direction, -path.direction);
     bool merges_there = (y.previous & LIGHT_VERTEX_MERGES) != 0u &&
                         (is_narrow(s.material) || is_short_edge(y.position, p.position));
-    float merging_there = merges_there ? merge_density(y.position) : 0.0;
+    float merging_there = merges_there ? merge_density(in_volume(there), y.position) : 0.0;
     float merging_here = is_narrow(there.material) ? mis.merging : 0.0;
     float connects_there = (y.previous & VERTEX_STARTS) != 0u ? 1.0 : CONNECTION_SHARE;
     float by_backward = towards_there * (merging_there + connects_there * y.vcm + away.pdf_reverse * y.vc);

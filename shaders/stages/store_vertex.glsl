@@ -3,7 +3,7 @@
 #include "lib/vertex_grid.glsl"
 
 void store_vertex(inout Path path, uint path_index, SurfacePoint p, ScatteringPoint s, Hit hit, VertexMis mis) {
-    bool merges = MERGE_VERTICES == 1 && (path.flags & PATH_AFTER_NARROW) != 0u && !in_volume(s);
+    bool merges = MERGE_VERTICES == 1 && (path.flags & PATH_AFTER_NARROW) != 0u;
 #if !CONNECT_VERTICES
     if (!merges) return;
 #endif
