@@ -150,8 +150,9 @@ def glass_in_fog():
     s = Gltf(
         "glass_in_fog",
         "A glass sphere (index 1.5, radius 0.35 m) hangs in a cube of fog, which scatters a quarter of the light on each metre,"
-        " under a lamp of 0.08 m whose light it gathers: a bright cone in the fog narrows towards a spot on the floor, and the"
-        " shadow around it is a dark cone. The lamp sends pi x 1500 x pi x 0.04² m² = 23.7 lm downward.",
+        " under a lamp of 0.07 x 0.07 m whose light it gathers: a bright cone in the fog narrows towards a spot on the floor, and"
+        " the shadow around it is a dark cone. The lamp sends pi x 1500 x 0.956 x 0.0049 m² = 22.1 lm; 0.956 is the luminance of"
+        " its colour.",
     )
     s.medium("fog", scattering=0.25, phase={"class": "henyey_greenstein", "g": 0.4})
     s.medium("glass", ior=1.5)
@@ -161,7 +162,8 @@ def glass_in_fog():
     lamp = s.emitter("lamp", 1500, (1, 0.95, 0.88))
     s.quad("floor", grey, [[-3, 0, 3], [3, 0, 3], [3, 0, -3], [-3, 0, -3]])
     s.box("fog", border, [2.6, 2.6, 2.6], translation=[0, 0.02, 0])
-    s.shape("lamp", "disk", lamp, matrix=facing([0, 2.4, 0], [0, -1, 0], (0, 0, -1)), radius=0.04)
+    a = 0.035
+    s.quad("lamp", lamp, [[-a, 2.4, -a], [a, 2.4, -a], [a, 2.4, a], [-a, 2.4, a]])
     s.shape("glass sphere", "sphere", glass, [0, 1.5, 0], radius=0.35)
     s.camera([0, 1.9, 6.5], [0, 1.2, 0], 26, 1)
     return s

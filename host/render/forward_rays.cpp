@@ -15,8 +15,9 @@ struct ForwardPass {
 
 constexpr double short_edge_pixels = 32.0;  // so much shorter than the image that longer edges connect well
 constexpr uint32_t vertices_a_path = 16;    // for which room is kept, if there is as much
-// At least. Longer paths do not happen: Russian roulette lets one live so long with probability 1e-21.
-constexpr uint64_t least_vertices = 1024;
+// At least: of the longest path. Between surfaces Russian roulette lets one live for 1024 with probability
+// 1e-21; in media that scatter and hardly absorb only MAX_DEPTH of shaders/lib/path.glsl ends them.
+constexpr uint64_t least_vertices = 1024, least_vertices_in_media = 65536;
 
 }  // namespace
 
@@ -43,10 +44,11 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
         const auto make = [&](const std::string& file, const BufferTable& table, const std::string& defines) {
             return make_kernel(device, scene, file, table, defines);
         };
-        const uint64_t most = std::max(least_vertices, uint64_t(count_) * vertices_a_path);
+        const uint64_t least = scene.features.scattering ? least_vertices_in_media : least_vertices;
+        const uint64_t most = std::max(least, uint64_t(count_) * vertices_a_path);
         const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex(scene.features.spectral);
-        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least_vertices, most)),
-                          scene.features.spectral, make, settings.binding_bytes);
+        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least, most)), scene.features.spectral,
+                          make, settings.binding_bytes);
         path_ends_ = Buffer(device, uint64_t(count_) * 8, "PathEnds");
     }
     BufferTable table = buffers();

@@ -348,6 +348,6 @@ TEST_CASE("algorithms agree: milk in smooth glass, ink around a point light, fog
              at(0, -0.5, 0.6));
     s.sphere(0.4, s.surface(metal(0)), at(-1.2, 0.4, -0.8));
     Comparison c;
-    c.forward = 256, c.largest_error = 0.01;
+    c.backward = 1024, c.forward = 256, c.largest_error = 0.01;
     check_against_backward(s, c);
 }

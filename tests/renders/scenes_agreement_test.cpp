@@ -18,10 +18,11 @@ namespace {
 // are compared a second time with lamps so many times as wide, of the same radiance.
 struct HiddenLamp {
     float wider;
-    uint32_t backward, forward, bidirectional;  // passes as they are
+    uint32_t backward, forward, bidirectional;  // passes as they are; 0 = too many for a test
     double largest_error;
 };
 const std::map<std::string, HiddenLamp> hidden_lamps = {{"caustic_box", {8, 16384, 128, 1024, 0.02}},
+                                                        {"glass_in_fog", {10, 0, 0, 0, 0}},
                                                         {"pool", {10, 16384, 2048, 64, 0.04}}};
 
 void widen_lamp(SceneDescription& scene, float factor) {
@@ -85,7 +86,7 @@ TEST_CASE("algorithms agree: every scene in scenes/" * doctest::test_suite("long
                 long_one.backward = h.backward, long_one.forward = h.forward;
                 long_one.bidirectional = h.bidirectional, long_one.largest_error = h.largest_error;
                 Scene as_it_is = compile_test_scene(description);
-                check_against_backward(as_it_is, long_one);
+                if (h.backward > 0) check_against_backward(as_it_is, long_one);
                 widen_lamp(description, h.wider);
             }
             Scene scene = compile_test_scene(description);
