@@ -239,7 +239,7 @@ TEST_CASE("lossless media are invisible under a constant environment") {
             CAPTURE(m.mean);
             CAPTURE(m.standard_error);
             CHECK(std::fabs(m.mean - 1) < balls[i].tolerance + 4 * m.standard_error);
-            CHECK(m.standard_error < 0.005);
+            CHECK(m.standard_error < (algorithm == Algorithm::backward ? 0.005 : 0.008));
         }
         CHECK(e.counters.depth_limit == 0);
         CHECK(e.counters.non_finite == 0);
