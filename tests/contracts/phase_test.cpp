@@ -98,7 +98,7 @@ TEST_CASE("phase functions: values integrate to one, samples follow them, and ke
             }
             // Cells that a cosine in single precision does not resolve count together, on either side.
             for (size_t k = 0; k < observed.size(); ++k) {
-                const bool first = bounds[k + 1] < -1 + 1e-5, last = bounds[k] > 1 - 1e-5;
+                const bool first = 1 + bounds[k + 1] < 1e-5, last = 1 - bounds[k] < 1e-5;
                 if (!first && !last) continue;
                 const size_t into = first ? 0 : observed.size() - 1;
                 if (k == into) continue;
