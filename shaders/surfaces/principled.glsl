@@ -1,6 +1,6 @@
 // The metallic-roughness material of glTF 2.0 (specification, appendix B) with KHR_materials_ior, _transmission, _specular,
-// _anisotropy, _iridescence, _diffuse_transmission, _clearcoat and _sheen: a mix, by `metallic`, of a metal and a dielectric that is
-// diffuse below (or lets light through, by `transmission`), under cloth fibres, under a coat of index 1.5.
+// _anisotropy, _iridescence, _diffuse_transmission, _clearcoat and _sheen: a mix, by `metallic`, of a metal and a
+// dielectric that is diffuse below (or lets light through, by `transmission`), under cloth fibres, under a coat of index 1.5.
 //
 // Differences from the appendix and the extensions, which leave energy to the implementer:
 // - The diffuse part is c (1 - D(wo)) (1 - D(wi)) / (pi (1 - D_avg)), where D bounds the albedo of the
