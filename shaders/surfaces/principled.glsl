@@ -132,7 +132,9 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     principled_facet(m, cos_o, reflected, transmitted);
     if (principled_transmits_straight(m)) transmitted = Spectrum(0);
     float reflection_part = principled_reflection_part(reflected, transmitted);
-    bool reflects = diffuse ? !through : coat || sheen || rest < reflection_part * choice.facet_probability;
+    // Where nothing is transmitted all is reflected, also where the last of the probabilities is rounded.
+    bool facet_reflects = is_black(transmitted) || rest < reflection_part * choice.facet_probability;
+    bool reflects = diffuse ? !through : coat || sheen || facet_reflects;
     vec3 wi = 2.0 * cos_o * h - wo;
     if (!reflects && m.thin) wi.z = -wi.z;
     if (!reflects && !m.thin) refract_direction(wo, h, cos_o, m.eta, wi);
