@@ -13,7 +13,10 @@ namespace etendue {
 namespace {
 
 constexpr uint32_t pilot_pixels = 32;  // along the longer side
-constexpr uint32_t pilot_passes = 32;
+constexpr uint32_t pilot_passes = 64;
+// Rare bright samples make a pilot a noisy judge, by a factor of two either way: forward rays must win
+// clearly.
+constexpr double clear_win = 0.5;
 constexpr double false_alarm = 1e-3;                   // of calling images different that are not
 constexpr double most_paths = 16, least_paths = 0.25;  // forward paths a pixel
 
@@ -79,7 +82,7 @@ AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSetti
     const bool agreed = agree(backward.image, one.image);
     const double ratio = one.variance * one.seconds / (backward.variance * backward.seconds);
     const std::string measured = fmt::format("error² x time of bidirectional is {:.3g} of backward", ratio);
-    if (agreed && !(ratio < 1)) {
+    if (agreed && !(ratio < clear_win)) {
         choice.reason = "a pilot agrees both ways, and " + measured;
     } else {
         choice.algorithm = Algorithm::bidirectional;
