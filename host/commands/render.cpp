@@ -152,7 +152,7 @@ int render_command(const RenderOptions& given) {
     finish_progress(progress, status);
     if (!options.checkpoint.empty()) save_checkpoint(options.checkpoint, identity, renderer);
 
-    Image image = renderer.develop();
+    Image image = renderer.develop(options.aovs);
     const RelativeError error = renderer.relative_error();
     if (options.aovs) renderer.add_aovs(image, aov_samples);
     renderer.add_spectra(image);
@@ -167,7 +167,6 @@ int render_command(const RenderOptions& given) {
         {"device", device.description.name},
         {"driver", device.description.driver},
         {"version", std::string(ETENDUE_VERSION)}});
-    if (!options.aovs) remove_channels(image, "error.");
     write_exr(options.output, image);
     if (!options.stats.empty())
         write_stats(options.stats, options, device, scene, renderer, error, setup_seconds);

@@ -46,19 +46,18 @@ FilmSums Film::sums() const {
     return sums;
 }
 
-Image Film::develop() const {
+Image Film::develop(bool errors) const {
     Image image;
     image.width = width_, image.height = height_;
     const FilmSums film = sums();
     std::vector<glm::vec3> means;
     means.reserve(film.pixels.size());
     for (const FilmPixel& p : film.pixels) means.push_back(mean(p));
-    const std::vector<glm::vec3> errors = estimate_errors(film);
     const auto floats = [](const std::vector<glm::vec3>& v) {
         return std::span<const float>(&v[0].x, 3 * v.size());
     };
     add_channels(image, {"R", "G", "B"}, floats(means), 3);
-    add_channels(image, {"error.R", "error.G", "error.B"}, floats(errors), 3);
+    if (errors) add_channels(image, {"error.R", "error.G", "error.B"}, floats(estimate_errors(film)), 3);
     return image;
 }
 

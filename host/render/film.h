@@ -25,8 +25,9 @@ class Film {
     std::vector<std::byte> read() const;
     void write(const std::vector<std::byte>& pixels);  // of a film of the same size and kind
 
-    // Mean radiance as R, G, B, and its error (estimate_errors) as error.R, error.G, error.B.
-    Image develop() const;
+    // Mean radiance as R, G, B, and, where asked for, its error (estimate_errors, which takes longer than all
+    // else) as error.R, error.G, error.B.
+    Image develop(bool errors) const;
     RelativeError relative_error() const;  // without developing, which takes longer
 
   private:

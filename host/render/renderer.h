@@ -92,7 +92,7 @@ class Renderer {
     Schedule schedule() const { return schedule_; }
     const AlgorithmChoice& choice() const { return choice_; }
 
-    Image develop() const { return film_->develop(); }
+    Image develop(bool errors = true) const { return film_->develop(errors); }
     // Adds the spectra of a spectral image, if it is one (SpectralFilm::add_to).
     void add_spectra(Image& image) const;
     RelativeError relative_error() const { return film_->relative_error(); }
