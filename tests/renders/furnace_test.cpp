@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "tests/support/render_probe.h"
+#include "tests/renders/sphere_row.h"
 
 using namespace etendue;
 
@@ -50,8 +50,8 @@ const std::vector<Sphere>& spheres() {
     return list;
 }
 
-constexpr uint32_t cell = 16;                // pixels, of 2.2 m: a sphere of radius 1 m and some background
-constexpr double spacing = 2.2, radius = 1;  // m
+constexpr uint32_t cell = sphere_pixels;
+constexpr double spacing = sphere_spacing, radius = 1;  // m
 const double environment[3] = {0.5, 1, 2};
 
 Estimates render_row() {
@@ -71,34 +71,13 @@ Estimates render_row() {
     return render_estimates(scene.import(), plan);
 }
 
-// Mean over the pixels that lie in the sphere's disk, divided by the environment; with its standard error.
-WindowMean albedo(const Estimates& e, size_t index) {
-    WindowMean result;
-    std::vector<double> means(e.seeds, 0.0);
-    double count = 0;
-    for (uint32_t y = 0; y < cell; ++y)
-        for (uint32_t x = 0; x < cell; ++x) {
-            const double dx = (x + 0.5) / cell - 0.5, dy = (y + 0.5) / cell - 0.5;
-            if (std::hypot(dx, dy) * spacing > radius) continue;
-            for (uint32_t c = 0; c < 3; ++c, ++count)
-                for (uint32_t s = 0; s < e.seeds; ++s)
-                    means[s] +=
-                        e.images[s][3 * (size_t(y) * e.width + index * cell + x) + c] / environment[c];
-        }
-    for (double& m : means) m /= count, result.mean += m / e.seeds;
-    for (const double m : means)
-        result.standard_error += (m - result.mean) * (m - result.mean) / (e.seeds - 1.0) / e.seeds;
-    result.standard_error = std::sqrt(result.standard_error);
-    return result;
-}
-
 }  // namespace
 
 TEST_CASE("lossless spheres are invisible under a constant environment") {
     const Estimates e = render_row();
     for (size_t i = 0; i < spheres().size(); ++i) {
         const Sphere& sphere = spheres()[i];
-        const WindowMean m = albedo(e, i);
+        const WindowMean m = disk_albedo(e, i, radius, environment);
         CAPTURE(sphere.name);
         CAPTURE(m.mean);
         CAPTURE(m.standard_error);

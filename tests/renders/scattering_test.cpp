@@ -10,6 +10,7 @@
 #include "host/spectra/color.h"
 #include "tests/renders/agreement_scenes.h"
 #include "tests/renders/algorithm_comparison.h"
+#include "tests/renders/sphere_row.h"
 
 using namespace etendue;
 using nlohmann::json;
@@ -193,27 +194,7 @@ std::vector<Ball> lossless_balls() {
             {"Rayleigh", boundary, {{"scattering", {1, 2, 4}}, {"phase", {{"class", "rayleigh"}}}}}};
 }
 
-constexpr uint32_t cell = 16;  // pixels, of 2.2 m: a sphere of radius 1 m
 const double sky[3] = {0.5, 1, 2};
-
-// Mean over a sphere's disk, relative to the sky.
-WindowMean brightness(const Estimates& e, size_t index) {
-    std::vector<double> means(e.seeds);
-    double count = 0;
-    for (uint32_t y = 0; y < cell; ++y)
-        for (uint32_t x = 0; x < cell; ++x) {
-            if (std::hypot((x + 0.5) / cell - 0.5, (y + 0.5) / cell - 0.5) * 2.2 > 0.95) continue;
-            for (uint32_t c = 0; c < 3; ++c, ++count)
-                for (uint32_t s = 0; s < e.seeds; ++s)
-                    means[s] += e.images[s][3 * (size_t(y) * e.width + index * cell + x) + c] / sky[c];
-        }
-    WindowMean result;
-    for (double& m : means) m /= count, result.mean += m / e.seeds;
-    for (const double m : means)
-        result.standard_error += (m - result.mean) * (m - result.mean) / (e.seeds - 1.0) / e.seeds;
-    result.standard_error = std::sqrt(result.standard_error);
-    return result;
-}
 
 }  // namespace
 
@@ -222,18 +203,19 @@ TEST_CASE("lossless media are invisible under a constant environment") {
     SceneBuilder s;
     for (size_t i = 0; i < balls.size(); ++i) {
         s.medium(balls[i].name, balls[i].medium);
-        s.sphere(1, filled(s, balls[i].surface, balls[i].name), at(2.2 * (double(i) + 0.5), 0, 0));
+        s.sphere(1, filled(s, balls[i].surface, balls[i].name), at(sphere_spacing * (double(i) + 0.5), 0, 0));
     }
     s.environment({sky[0], sky[1], sky[2]});
     s.orthographic(1.1, at(1.1 * double(balls.size()), 0, 5));
     Scene scene = compile_test_scene(s.import());
     for (const Algorithm algorithm : {Algorithm::backward, Algorithm::bidirectional}) {
         RenderPlan plan;
-        plan.width = cell * uint32_t(balls.size()), plan.height = cell, plan.algorithm = algorithm;
+        plan.width = sphere_pixels * uint32_t(balls.size()), plan.height = sphere_pixels,
+        plan.algorithm = algorithm;
         plan.passes = algorithm == Algorithm::backward ? 128 : 32;
         const Estimates e = render_estimates(scene, plan);
         for (size_t i = 0; i < balls.size(); ++i) {
-            const WindowMean m = brightness(e, i);
+            const WindowMean m = disk_albedo(e, i, 0.95, sky);
             CAPTURE(algorithm_name(algorithm));
             CAPTURE(balls[i].name);
             CAPTURE(m.mean);
