@@ -1,18 +1,18 @@
 // MediumOptics: what happens between surfaces. A class NAME defines, for its record R:
 //
 //   Spectrum NAME_ior(R r)                          real refractive index
-//   Spectrum NAME_transmittance(R r, float distance)   part that is left after `distance` metres, neither absorbed nor scattered
+//   Passage  NAME_pass(R r, MediumRay ray, uint seed)   part that is left at the end of the ray, neither absorbed nor scattered
 //   bool     NAME_is_clear(R r)                     all of it is left, whatever the distance
 //   bool     NAME_scatters(R r)                     some of it is scattered. Only then are asked:
-//   FreePath NAME_free_path(R r, float distance, Spectrum carried, vec2 u)   where light that carries so much scatters on a way
-//                                                   of `distance`, by two numbers spread evenly over [0,1)
-//   float    NAME_passage(R r, float distance)      transmittance of an average lane
-//   float    NAME_mean_extinction(R r)              extinction coefficient of an average lane, 1/m
-//   Spectrum NAME_scattering(R r)                   scattering coefficient, 1/m
+//   FreePath NAME_free_path(R r, MediumRay ray, Spectrum carried, vec2 u, uint seed)   where on the ray light that carries so much
+//                                                   scatters, by two numbers spread evenly over [0,1)
+//   float    NAME_mean_extinction(R r, vec3 position)   extinction coefficient of an average lane, 1/m
+//   Spectrum NAME_scattering(R r, vec3 position)    scattering coefficient, 1/m
 //   uint     NAME_phase(R r)                        RecordRef of the phase function
 //
-// Passage and mean extinction serve to weigh ways to make a path against each other (lib/mis.glsl): they are the same for every
-// path, whatever its lanes carry, and in both directions.
+// Rays and positions are in world space. `seed`: for classes that need any number of random numbers; right in the mean over
+// all seeds. Passage.mean, FreePath.passage and the mean extinction serve to weigh ways to make a path against each other
+// (lib/mis.glsl): they are the same for every path, whatever its lanes carry and whatever the seed, and in both directions.
 // No medium (NO_RECORD) is vacuum: ior 1, nothing absorbed, nothing scattered.
 #include "lib/constants.glsl"
 #include "lib/spectrum.glsl"
@@ -37,10 +37,10 @@ Spectrum medium_spectral_ior(uint ref) {
 // Of the hero wavelength; colours have one index.
 float medium_ior(uint ref) { return medium_spectral_ior(ref).x; }
 
-Spectrum medium_transmittance(uint ref, float distance) {
-    Spectrum result = Spectrum(1);
+Passage medium_pass(uint ref, MediumRay ray, uint seed) {
+    Passage result = Passage(Spectrum(1), 1.0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_transmittance(name##_record(record_index(ref)), distance); break;
+#define CASE(tag, Struct, name) case tag: result = name##_pass(name##_record(record_index(ref)), ray, seed); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }
@@ -68,40 +68,30 @@ bool medium_scatters(uint ref) {
 }
 
 #if HAS_SCATTERING
-FreePath medium_free_path(uint ref, float distance, Spectrum carried, vec2 u) {
-    FreePath result = FreePath(false, distance, Spectrum(1), 1.0);
+FreePath medium_free_path(uint ref, MediumRay ray, Spectrum carried, vec2 u, uint seed) {
+    FreePath result = FreePath(false, ray.distance, Spectrum(1), 1.0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_free_path(name##_record(record_index(ref)), distance, carried, u); break;
+#define CASE(tag, Struct, name) case tag: result = name##_free_path(name##_record(record_index(ref)), ray, carried, u, seed); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }
     return result;
 }
 
-float medium_passage(uint ref, float distance) {
-    float result = 1.0;
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_passage(name##_record(record_index(ref)), distance); break;
-        MEDIUM_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
-}
-
-float medium_mean_extinction(uint ref) {
+float medium_mean_extinction(uint ref, vec3 position) {
     float result = 0.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_mean_extinction(name##_record(record_index(ref))); break;
+#define CASE(tag, Struct, name) case tag: result = name##_mean_extinction(name##_record(record_index(ref)), position); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }
     return result;
 }
 
-Spectrum medium_scattering(uint ref) {
+Spectrum medium_scattering(uint ref, vec3 position) {
     Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_scattering(name##_record(record_index(ref))); break;
+#define CASE(tag, Struct, name) case tag: result = name##_scattering(name##_record(record_index(ref)), position); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }

@@ -10,9 +10,11 @@ float shadow_t_max(vec3 origin, float distance) {
 
 // Takes a path through its medium to what it hits, or to where it scatters before. True: it scatters, hit.t metres on.
 bool cross_medium(inout Path path, inout Hit hit) {
+    MediumRay ray = MediumRay(path.origin, path.direction, hit.t);
 #if HAS_SCATTERING
     if (medium_scatters(path.medium)) {
-        FreePath free = medium_free_path(path.medium, hit.t, path.throughput, sample_2d(path.random));
+        vec2 u = sample_2d(path.random);
+        FreePath free = medium_free_path(path.medium, ray, path.throughput, u, sample_seed(path.random));
         path.throughput *= free.weight;
         path.passage *= free.passage;
         // Never on the other side of what it would have hit, by rounding.
@@ -21,7 +23,7 @@ bool cross_medium(inout Path path, inout Hit hit) {
     }
 #endif
 #if HAS_MEDIA
-    if (path.medium != NO_RECORD) path.throughput *= medium_transmittance(path.medium, hit.t);
+    if (path.medium != NO_RECORD) path.throughput *= medium_pass(path.medium, ray, sample_seed(path.random)).transmittance;
 #endif
     return false;
 }

@@ -89,6 +89,9 @@ float sample_1d(inout Sampler s) {
 }
 #endif
 
+// To start a generator of its own with, for estimators that need any number of numbers: another one after every pair drawn.
+uint sample_seed(Sampler s) { return hash_3d(uvec3(s.pixel_hash ^ 0x9E3779B9u, s.dimension, s.index)).x; }
+
 // A pair that is stratified together, and one number more.
 vec3 sample_3d(inout Sampler s) {
     vec2 pair = sample_2d(s);

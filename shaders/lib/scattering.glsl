@@ -159,7 +159,7 @@ SurfacePoint volume_point(vec3 position, vec3 direction) {
     return p;
 }
 
-ScatteringPoint volume_scattering_point(vec3 direction, uint medium, bool importance) {
+ScatteringPoint volume_scattering_point(vec3 position, vec3 direction, uint medium, bool importance) {
     ScatteringPoint s;
     s.frame = frame_around(direction);
     s.normal = s.shading_normal = direction;
@@ -171,7 +171,7 @@ ScatteringPoint volume_scattering_point(vec3 direction, uint medium, bool import
     s.disperses = false;
 #endif
     s.phase = medium_phase(medium);
-    s.extinction = medium_mean_extinction(medium);
+    s.extinction = medium_mean_extinction(medium, position);
     return s;
 }
 #endif

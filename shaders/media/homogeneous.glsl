@@ -12,20 +12,21 @@ Spectrum homogeneous_ior(Homogeneous r) { return spectrum_value(r.ior); }
 
 Spectrum homogeneous_extinction(Homogeneous r) { return spectrum_value(r.absorption) + spectrum_value(r.scattering); }
 
-Spectrum homogeneous_transmittance(Homogeneous r, float distance) { return exp(-homogeneous_extinction(r) * distance); }
+Passage homogeneous_pass(Homogeneous r, MediumRay ray, uint seed) {
+    Spectrum left = exp(-homogeneous_extinction(r) * ray.distance);
+    return Passage(left, brightness(left));
+}
 
 bool homogeneous_is_clear(Homogeneous r) { return is_black(homogeneous_extinction(r)); }
 
 bool homogeneous_scatters(Homogeneous r) { return !is_black(spectrum_value(r.scattering)); }
 
-FreePath homogeneous_free_path(Homogeneous r, float distance, Spectrum carried, vec2 u) {
-    return sample_free_path(homogeneous_extinction(r), spectrum_value(r.scattering), distance, carried, u);
+FreePath homogeneous_free_path(Homogeneous r, MediumRay ray, Spectrum carried, vec2 u, uint seed) {
+    return sample_free_path(homogeneous_extinction(r), spectrum_value(r.scattering), ray.distance, carried, u);
 }
 
-float homogeneous_passage(Homogeneous r, float distance) { return brightness(homogeneous_transmittance(r, distance)); }
+float homogeneous_mean_extinction(Homogeneous r, vec3 position) { return brightness(homogeneous_extinction(r)); }
 
-float homogeneous_mean_extinction(Homogeneous r) { return brightness(homogeneous_extinction(r)); }
-
-Spectrum homogeneous_scattering(Homogeneous r) { return spectrum_value(r.scattering); }
+Spectrum homogeneous_scattering(Homogeneous r, vec3 position) { return spectrum_value(r.scattering); }
 
 uint homogeneous_phase(Homogeneous r) { return r.phase.ref; }

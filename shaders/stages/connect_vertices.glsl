@@ -27,7 +27,7 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     ScatteringPoint there;
 #if HAS_SCATTERING
     if (y.primitive == NO_RECORD)
-        there = volume_scattering_point(-light_direction, y.normal, true);
+        there = volume_scattering_point(y.position, -light_direction, y.normal, true);
     else
 #endif
     {

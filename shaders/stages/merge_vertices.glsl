@@ -46,7 +46,7 @@ void merge_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMi
     Spectrum scale = path.throughput * (forward_pass.path_flux / merge_size(in_volume(s), radius));
 #if HAS_SCATTERING
     if (in_volume(s)) {
-        Spectrum scattering = medium_scattering(s.medium_above);
+        Spectrum scattering = medium_scattering(s.medium_above, p.position);
         scale = mix(scale / scattering, Spectrum(0), lessThanEqual(scattering, Spectrum(0)));
     }
 #endif

@@ -41,7 +41,7 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
 #if HAS_SCATTERING
     if (scatters) {
         p = volume_point(path.origin + hit.t * path.direction, path.direction);
-        s = volume_scattering_point(path.direction, path.medium, true);
+        s = volume_scattering_point(p.position, path.direction, path.medium, true);
     } else
 #endif
     {

@@ -119,7 +119,7 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     }
     ScatteringPoint s;
 #if HAS_SCATTERING
-    if (scatters) s = volume_scattering_point(path.direction, path.medium, false);
+    if (scatters) s = volume_scattering_point(p.position, path.direction, path.medium, false);
     else
 #endif
         s = scattering_point(p, path.direction, path.medium);

@@ -4,13 +4,21 @@
 #include "lib/scattering.glsl"
 #include "lib/traversal.glsl"
 
+// A number for the ray that no other has, for media that need random numbers.
+uint shadow_seed(ShadowRay shadow) {
+    uvec3 where = hash_3d(floatBitsToUint(shadow.origin)), how = floatBitsToUint(shadow.direction);
+    return hash_3d(hash_3d(where ^ how) ^ floatBitsToUint(vec3(shadow.contribution[0], shadow.contribution[1], shadow.t_max))).x;
+}
+
 // Through the medium that the ray is in.
 void pass_medium(inout ShadowRay shadow, float distance) {
 #if HAS_MEDIA
-    if (shadow.medium != NO_RECORD) shadow.contribution *= medium_transmittance(shadow.medium, distance);
-#endif
+    if (shadow.medium == NO_RECORD) return;
+    Passage passage = medium_pass(shadow.medium, MediumRay(shadow.origin, shadow.direction, distance), shadow_seed(shadow));
+    shadow.contribution *= passage.transmittance;
 #if HAS_SCATTERING
-    if (medium_scatters(shadow.medium)) shadow.others *= medium_passage(shadow.medium, distance);
+    if (medium_scatters(shadow.medium)) shadow.others *= passage.mean;
+#endif
 #endif
 }
 
