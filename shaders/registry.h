@@ -41,7 +41,8 @@
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)              \
-    X(1, Homogeneous, homogeneous)
+    X(1, Homogeneous, homogeneous)     \
+    X(2, Grid, grid)
 
 // folder phases/, contract interfaces/phase_function.glsl
 #define PHASE_CLASSES(X)               \

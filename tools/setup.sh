@@ -12,6 +12,7 @@ packages=(
     libvulkan-dev vulkan-validationlayers libvulkan1
     glslang-dev spirv-tools spirv-headers libglm-dev libtinygltf-dev libopenexr-dev libfmt-dev
     libcli11-dev nlohmann-json3-dev doctest-dev libstb-dev gnuplot-nox
+    libopenvdb-dev libboost-dev # grids of media; OpenVDB's headers want Boost's
 )
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }
 apt_get() { as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 "$@"; }

@@ -29,6 +29,7 @@ struct Features {
     bool triangle_indices_by_address = false;
     bool texels_by_address = false;
     bool environment_texels_by_address = false;
+    bool density_values_by_address = false;
     bool film_by_address = false;  // set by the renderer
     uint32_t spectral_bins = 0;    // of a spectral image; set by the renderer
     uint32_t texture_formats = 7;  // of lib/textures.glsl, a bit each

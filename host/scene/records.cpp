@@ -86,6 +86,8 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
         store(record, at, ref);
     } else if (type == "PhaseRef") {
         store(record, at, resolver.phase(where));
+    } else if (type == "GridRef") {
+        store(record, at, resolver.grid(value, where));
     } else if (type == "EnvironmentMapRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of an image file", place);
         store(record, at, resolver.environment_map(value.get<std::string>(), where));

@@ -29,6 +29,9 @@ struct RecordResolver {
     std::function<uint32_t(const nlohmann::json& info, bool color, const std::string& where)> texture;
     std::function<EnvironmentMapRef(const std::filesystem::path& file, const std::string& where)>
         environment_map;
+    // Index of a density in space that is given by a file.
+    std::function<uint32_t(const nlohmann::json& value, const std::string& where)> grid =
+        [](const nlohmann::json&, const std::string&) { return 0u; };
     // RecordRef of the phase function that stands at that place of the scene.
     std::function<uint32_t(const std::string& where)> phase = [](const std::string&) { return 0xFFFFFFFFu; };
     // Index of the table that a spectrum has where paths carry wavelengths.

@@ -30,6 +30,9 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
         environment_texels_.insert(environment_texels_.end(), map.texels.begin(), map.texels.end());
         return map.ref;
     };
+    resolver_.grid = [this](const nlohmann::json& value, const std::string& where) {
+        return add_grid(value, where);
+    };
 }
 
 Scene SceneCompiler::run() {
@@ -46,6 +49,7 @@ Scene SceneCompiler::run() {
     add_media();
     add_materials();
     add_geometry();
+    upload_grids();
     if (world_.bounds.empty() && !in_.environment && options_.environment.empty())
         fail_input("{}: the scene is empty: it has neither geometry nor an environment", in_.file.string());
     add_receivers();

@@ -3,6 +3,7 @@
 // and scene_lights.cpp.
 #pragma once
 #include "host/scene/light_tree.h"
+#include "host/scene/density_bricks.h"
 #include "host/scene/scene.h"
 #include "host/scene/texture_pack.h"
 
@@ -42,6 +43,10 @@ class SceneCompiler {
     // lane's item.
     void run_once(const std::string& file, uint32_t items, const BufferTable& buffers,
                   std::vector<PushValue> values);
+
+    // scene_grids.cpp
+    uint32_t add_grid(const nlohmann::json& value, const std::string& where);
+    void upload_grids();  // once the centre of the world is known
 
     // scene_spectra.cpp
     uint32_t add_spectrum(const SpectralValue& value, SpectralKind kind);
@@ -85,7 +90,7 @@ class SceneCompiler {
             options_.binding_bytes ? options_.binding_bytes : device_.description.max_buffer_range;
         by_address = out_.buffers[name].bytes() > limit;
         large_arrays_[slot] = out_.buffers[name].address();
-        upload("LargeArrays", std::vector<uint64_t>(large_arrays_, large_arrays_ + 6));
+        upload("LargeArrays", std::vector<uint64_t>(large_arrays_, large_arrays_ + 7));
     }
 
     Device& device_;
@@ -97,10 +102,13 @@ class SceneCompiler {
     std::map<Interface, RecordBuffer> records_;
     std::vector<TextureUse> textures_;
     std::vector<glm::uvec4> environment_texels_;  // floats, as bits
+    std::vector<DensityGridRecord> grids_;
+    std::vector<glm::dmat4> grid_placements_;  // world_from_lattice
+    DensityBricks density_bricks_;
     std::vector<MaterialRecord> materials_;
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
     World world_;
-    uint64_t large_arrays_[6] = {};
+    uint64_t large_arrays_[7] = {};
     std::map<std::string, uint32_t> phases_;  // RecordRefs, by their places in the scene
     std::vector<uint32_t> lights_;            // RecordRefs
     uint32_t first_area_light_ = 0;           // in lights_, before they are sorted

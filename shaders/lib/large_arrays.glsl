@@ -7,6 +7,7 @@
 #define TRIANGLE_INDICES_BY_ADDRESS 0
 #define TEXELS_BY_ADDRESS 0
 #define ENVIRONMENT_TEXELS_BY_ADDRESS 0
+#define DENSITY_VALUES_BY_ADDRESS 0
 #endif
 
 layout(scalar, set = 0) readonly buffer LargeArrays {
@@ -16,4 +17,5 @@ layout(scalar, set = 0) readonly buffer LargeArrays {
     uvec2 triangle_indices_address;
     uvec2 texels_address;
     uvec2 environment_texels_address;
+    uvec2 density_values_address;
 };

@@ -149,7 +149,7 @@ void SceneBuilder::environment(json radiance) {
 
 void SceneBuilder::medium(const std::string& name, json parameters) {
     parameters["name"] = name;
-    parameters["class"] = "homogeneous";
+    if (!parameters.contains("class")) parameters["class"] = "homogeneous";
     optics()["media"].push_back(std::move(parameters));
 }
 

@@ -1,0 +1,78 @@
+// Densities that media of the class grid refer to.
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/matrix.hpp>
+
+#include "host/error.h"
+#include "host/scene/scene_compiler.h"
+
+namespace etendue {
+namespace {
+
+using nlohmann::json;
+
+std::vector<double> numbers(const json& object, const char* key, std::vector<double> otherwise,
+                            const std::string& place) {
+    if (!object.contains(key)) return otherwise;
+    const json& value = object[key];
+    std::vector<double> result;
+    for (size_t i = 0; value.is_array() && i < value.size(); ++i)
+        if (value[i].is_number() && std::isfinite(value[i].get<double>()) &&
+            std::abs(value[i].get<double>()) < 1e15)
+            result.push_back(value[i]);
+    if (!value.is_array() || result.size() != value.size() || result.size() != otherwise.size())
+        fail_input("{}/{}: allowed: an array of {} numbers", place, key, otherwise.size());
+    return result;
+}
+
+// {"name", "grid"} and, as for a node of glTF, "translation", "rotation", "scale".
+glm::dmat4 placement(const json& object, const std::string& place) {
+    const auto t = numbers(object, "translation", {0, 0, 0}, place),
+               s = numbers(object, "scale", {1, 1, 1}, place),
+               r = numbers(object, "rotation", {0, 0, 0, 1}, place);
+    const glm::dquat q(r[3], r[0], r[1], r[2]);
+    if (!(glm::length(q) > 1e-6))
+        fail_input("{}/rotation: a quaternion of zero length; allowed: length 1", place);
+    glm::dmat4 m = glm::mat4_cast(glm::normalize(q));
+    for (int c = 0; c < 3; ++c) m[c] *= s[c];
+    m[3] = glm::dvec4(t[0], t[1], t[2], 1);
+    return m;
+}
+
+}  // namespace
+
+uint32_t SceneCompiler::add_grid(const json& value, const std::string& where) {
+    const std::string place = message_place(in_, where);
+    const json object = value.is_string() ? json{{"name", value}} : value;
+    if (!object.is_object() || !object.contains("name") || !object["name"].is_string())
+        fail_input(
+            "{}: allowed: the name of a file, or {{\"name\", \"grid\", \"translation\", \"rotation\", "
+            "\"scale\"}}",
+            place);
+    for (const auto& [key, unused] : object.items())
+        if (key != "name" && key != "grid" && key != "translation" && key != "rotation" && key != "scale")
+            fail_input("{}/{}: unknown; allowed: name, grid, translation, rotation, scale", place, key);
+    if (object.contains("grid") && !object["grid"].is_string()) fail_input("{}/grid: allowed: a name", place);
+    const std::filesystem::path file = object["name"].get<std::string>();
+    const DensityLattice lattice =
+        read_density_file(file.is_absolute() ? file : in_.folder / file, object.value("grid", ""));
+    const glm::dmat4 world_from_lattice = placement(object, place) * lattice.world_from_lattice;
+    if (!(std::abs(glm::determinant(glm::dmat3(world_from_lattice))) > 0))
+        fail_input("{}: the transform of the density squashes space flat", place);
+    grids_.push_back(add_bricks(density_bricks_, lattice, file.string()));
+    grid_placements_.push_back(world_from_lattice);
+    return uint32_t(grids_.size() - 1);
+}
+
+void SceneCompiler::upload_grids() {
+    if (grids_.empty()) return;
+    for (size_t i = 0; i < grids_.size(); ++i) {
+        const glm::dmat4 m = glm::inverse(recentred(grid_placements_[i]));
+        for (int c = 0; c < 4; ++c) grids_[i].lattice_from_world[c] = glm::vec3(m[c]);
+    }
+    upload("DensityGrids", grids_);
+    upload("DensityBricks", density_bricks_.bricks);
+    upload_large("DensityValues", density_bricks_.values, 6, out_.features.density_values_by_address);
+}
+
+}  // namespace etendue
