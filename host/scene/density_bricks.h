@@ -1,4 +1,4 @@
-// A density as shaders/lib/density_grid.glsl reads it: bricks of 8 x 8 x 8 cells, those that vary with their
+// A density as shaders/lib/density_grid.glsl reads it: bricks of 4 x 4 x 4 cells, those that vary with their
 // values.
 #pragma once
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace etendue {
 
-constexpr uint32_t brick_cells = 8;  // along each axis
+constexpr uint32_t brick_cells = 4;  // along each axis
 
 // Twins of structs in shaders/lib/density_grid.glsl.
 struct DensityGridRecord {

@@ -66,7 +66,9 @@ DensityLattice read_vdb(const std::filesystem::path& path, const std::string& na
             openvdb::tools::copyToDense(*grid, dense, true);
         };
         return lattice;
-    } catch (const openvdb::Exception& e) {
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& e) {
         fail_input("{}: the OpenVDB file cannot be read: {}", where, e.what());
     }
 }

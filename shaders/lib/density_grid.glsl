@@ -1,4 +1,4 @@
-// A density in space from a file: given at the points of a lattice, trilinear between them, zero outside. Bricks of 8 x 8 x 8
+// A density in space from a file: given at the points of a lattice, trilinear between them, zero outside. Bricks of 4 x 4 x 4
 // cells know the least, the greatest and the mean density within them, so that what is empty or even costs little; only
 // those whose density varies keep its values. Written by host/scene/density_bricks.
 #include "lib/constants.glsl"
@@ -8,7 +8,7 @@
 
 struct GridRef { uint index; };  // a file with a density, or where it stands -> index of a DensityGrid
 
-const float BRICK_CELLS = 8.0;  // a side; twin in host/scene/density_bricks.h
+const float BRICK_CELLS = 4.0;  // a side; twin in host/scene/density_bricks.h
 
 // Twins of both structs in host/scene/density_bricks.h.
 struct DensityGrid {
@@ -18,7 +18,7 @@ struct DensityGrid {
 };
 struct DensityBrick {
     float least, greatest, mean;
-    uint first_value;  // of 9 x 9 x 9, x runs fastest; NO_RECORD: the density is the same everywhere
+    uint first_value;  // of 5 x 5 x 5, x runs fastest; NO_RECORD: the density is the same everywhere
 };
 layout(scalar, set = 0) readonly buffer DensityGrids { DensityGrid density_grids[]; };
 layout(scalar, set = 0) readonly buffer DensityBricks { DensityBrick density_bricks[]; };

@@ -3,14 +3,14 @@
 // Free paths are sampled without bias by tracking with null collisions: in each brick of the grid (lib/density_grid.glsl)
 // light collides as often as at the greatest density there, and a collision is real or null with probabilities in proportion to
 // what all lanes together lose to either (Kutz et al. 2017, "Spectral and Decomposition Tracking for Rendering Heterogeneous
-// Volumes", section 5.1.2, with weights that carry the history): what the lanes carry together never grows. Shadow rays are
+// Volumes", section 5, with probabilities by what the lanes still carry): what the lanes carry together never grows. Shadow rays are
 // attenuated by residual ratio tracking (Novák et al. 2014, "Residual Ratio Tracking for Estimating Attenuation in Participating
 // Media", section 3.2), with the least density of a brick as the control.
 #include "lib/density_grid.glsl"
 #include "lib/free_path.glsl"
 
 struct Grid {
-    GridRef file;            //: required. Density: an OpenVDB file (.vdb) or NRRD file, or {"name", "grid", "translation", "rotation", "scale"}.
+    GridRef file;            //: required. OpenVDB or NRRD file, or {"name", "grid", "translation", "rotation", "scale"}.
     float density;           //: 1 in [0, inf). Multiplies the densities of the file.
     SpectrumRef absorption;  //: 0 in [0, inf) 1/m. Absorption coefficient at density 1.
     SpectrumRef scattering;  //: 0 in [0, inf) 1/m. Scattering coefficient at density 1.
