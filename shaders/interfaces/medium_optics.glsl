@@ -4,8 +4,8 @@
 //   Passage  NAME_pass(R r, MediumRay ray, uint seed)   part that is left at the end of the ray, neither absorbed nor scattered
 //   bool     NAME_is_clear(R r)                     all of it is left, whatever the distance
 //   bool     NAME_scatters(R r)                     some of it is scattered. Only then are asked:
-//   FreePath NAME_free_path(R r, MediumRay ray, Spectrum carried, vec2 u, uint seed)   where on the ray light that carries so much
-//                                                   scatters, by two numbers spread evenly over [0,1)
+//   FreePath NAME_free_path(R r, MediumRay ray, Spectrum carried, vec2 u, uint seed)   where on the ray light that carries so
+//                                                   much scatters, by two numbers spread evenly over [0,1)
 //   float    NAME_mean_extinction(R r, vec3 position)   extinction coefficient of an average lane, 1/m
 //   Spectrum NAME_scattering(R r, vec3 position)    scattering coefficient, 1/m
 //   uint     NAME_phase(R r)                        RecordRef of the phase function

@@ -1,11 +1,11 @@
 // A medium whose density varies in space, from a file: absorption and scattering are in proportion to it.
 //
 // Free paths are sampled without bias by tracking with null collisions: in each brick of the grid (lib/density_grid.glsl)
-// light collides as often as at the greatest density there, and a collision is real or null with probabilities in proportion to
-// what all lanes together lose to either (Kutz et al. 2017, "Spectral and Decomposition Tracking for Rendering Heterogeneous
-// Volumes", section 5, with probabilities by what the lanes still carry): what the lanes carry together never grows. Shadow rays are
-// attenuated by residual ratio tracking (Novák et al. 2014, "Residual Ratio Tracking for Estimating Attenuation in Participating
-// Media", section 3.2), with the least density of a brick as the control.
+// light collides as often as at the greatest density there, and a collision is real or null with probabilities in proportion
+// to what all lanes together lose to either (Kutz et al. 2017, "Spectral and Decomposition Tracking for Rendering Heterogeneous
+// Volumes", section 5, with probabilities by what the lanes still carry): what the lanes carry together never grows. Shadow
+// rays are attenuated by residual ratio tracking (Novák et al. 2014, "Residual Ratio Tracking for Estimating Attenuation in
+// Participating Media", section 3.2), with the least density of a brick as the control.
 #include "lib/density_grid.glsl"
 #include "lib/free_path.glsl"
 
@@ -106,8 +106,12 @@ Passage grid_pass(Grid r, MediumRay ray, uint seed) {
     return Passage(left * exp(-extinction * least_column), grid_mean_passage(extinction, column));
 }
 
-float grid_mean_extinction(Grid r, vec3 position) { return density_at(r.file, position) * brightness(grid_unit_extinction(r)); }
+float grid_mean_extinction(Grid r, vec3 position) {
+    return density_at(r.file, position) * brightness(grid_unit_extinction(r));
+}
 
-Spectrum grid_scattering(Grid r, vec3 position) { return r.density * density_at(r.file, position) * spectrum_value(r.scattering); }
+Spectrum grid_scattering(Grid r, vec3 position) {
+    return r.density * density_at(r.file, position) * spectrum_value(r.scattering);
+}
 
 uint grid_phase(Grid r) { return r.phase.ref; }

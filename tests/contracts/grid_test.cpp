@@ -215,10 +215,14 @@ TEST_CASE("grid media: weights' passage is the same both ways, and near the tran
     const DensityField field = hills();
     TrackingProbe probe(field, grey);
     const Ray ray{{-2, -1.5, 1.6}, {1.4, 2.5, 4.2}};
-    const Track there = probe.run(ray.from, ray.direction(), ray.length(), grey.carried)[0];
-    const Track back = probe.run(ray.to, -ray.direction(), ray.length(), grey.carried)[0];
-    CHECK(there.mean == doctest::Approx(back.mean).epsilon(1e-4));
-    CHECK(there.mean == doctest::Approx(std::exp(-2 * columns(field, ray).back())).epsilon(0.5));
+    const auto mean = [&](const glm::dvec3& from, const glm::dvec3& direction) {
+        for (const Track& t : probe.run(from, direction, ray.length(), grey.carried))
+            if (t.transmittance != glm::vec3(0)) return double(t.mean);
+        return 0.0;
+    };
+    const double there = mean(ray.from, ray.direction()), back = mean(ray.to, -ray.direction());
+    CHECK(there == doctest::Approx(back).epsilon(1e-4));
+    CHECK(there == doctest::Approx(std::exp(-2 * columns(field, ray).back())).epsilon(0.5));
 }
 
 TEST_CASE("grid media: where density is even, free paths are those of a homogeneous medium") {
