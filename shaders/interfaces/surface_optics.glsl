@@ -4,12 +4,13 @@
 //
 //   R          NAME_resolve(R r, SurfaceContext c)                  the record at this point: textures applied. The functions
 //                                                                   below but the last see resolved records only
-//   Spectrum   NAME_eval(R r, SurfaceContext c, vec3 wo, vec3 wi)    f * |cos wi|, 1/sr, without delta parts
-//   float      NAME_pdf(R r, SurfaceContext c, vec3 wo, vec3 wi)     of `sample` choosing wi given wo, 1/sr, without delta parts
-//   BsdfSample NAME_sample(R r, SurfaceContext c, vec3 wo, vec3 u)   wi with weight f * |cos wi| / pdf
+//   SurfacePair NAME_evaluate(R r, SurfaceContext c, vec3 wo, vec3 wi)   scattering between two directions and the pdfs of `sample`
+//                                                                   choosing one given the other, without delta parts
+//   BsdfSample NAME_sample(R r, SurfaceContext c, vec3 wo, vec3 u)   wi and event; for delta events weight and pdf, too. For the
+//                                                                   others `evaluate` says those
 //   Spectrum   NAME_transparency(R r, SurfaceContext c, vec3 wo)     part that passes straight on, unscattered
-//   bool       NAME_is_delta(R r, SurfaceContext c)                  eval is zero for every pair of directions; may say
-//                                                                   false where only a texture makes it so
+//   bool       NAME_is_delta(R r, SurfaceContext c)                  evaluate gives zero for every pair of directions; may
+//                                                                   say false where only a texture makes it so
 //   bool       NAME_is_opaque(R r, SurfaceContext c)                 transparency is zero in every direction, whatever the
 //                                                                   textures and colors
 //
@@ -36,71 +37,42 @@ const uint EVENT_TRANSMIT = 2u;
 const uint EVENT_DELTA = 4u;     // pdf is the probability of the discrete direction, not a density
 const uint EVENT_STRAIGHT = 8u;  // passes on unscattered (the part that `transparency` gives); implies DELTA | TRANSMIT
 
+#ifndef BIDIRECTIONAL
+#define BIDIRECTIONAL 0
+#endif
+struct SurfacePair {
+    Spectrum value;     // f * |cos wi|, 1/sr
+    float pdf;          // of wi given wo, 1/sr
+    float pdf_reverse;  // of wo given wi; asked for only where BIDIRECTIONAL is 1
+};
+
+SurfacePair no_surface_pair() { return SurfacePair(Spectrum(0), 0.0, 0.0); }
+
 struct BsdfSample {
     vec3 wi;
-    Spectrum weight;
+    Spectrum weight;  // f * |cos wi| / pdf
     float pdf;
     uint event;
 };
 
 BsdfSample no_bsdf_sample() { return BsdfSample(vec3(0, 0, 1), Spectrum(0), 0.0, EVENT_NONE); }
 
+// What a class samples that is no delta event.
+BsdfSample scattered(vec3 wi, uint event) { return BsdfSample(wi, Spectrum(0), 0.0, event); }
+
 #include "generated/surface_classes.glsl"
 
-Spectrum surface_eval(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
-    Spectrum result = Spectrum(0);
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_eval(name##_resolve(name##_record(record_index(ref)), c), c, wo, wi); break;
-        SURFACE_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
-}
-
-float surface_pdf(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
-    float result = 0.0;
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_pdf(name##_resolve(name##_record(record_index(ref)), c), c, wo, wi); break;
-        SURFACE_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
-}
-
-BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
-    BsdfSample result = no_bsdf_sample();
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_sample(name##_resolve(name##_record(record_index(ref)), c), c, wo, u); break;
-        SURFACE_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
-}
-
-// Scattering between two directions: eval, pdf, and the pdf of the way back. The class is visited and its textures are read once.
-struct SurfacePair {
-    Spectrum value;
-    float pdf;          // of wi given wo
-    float pdf_reverse;  // of wo given wi
-};
-
-#define PAIR_CASE(tag, Struct, name)                                            \
-    case tag: {                                                                \
-        Struct r = name##_resolve(name##_record(record_index(ref)), c);        \
-        result.value = name##_eval(r, c, wo, wi);                              \
-        result.pdf = name##_pdf(r, c, wo, wi);                                 \
-        result.pdf_reverse = name##_pdf(r, c, wi, wo);                         \
-        break;                                                                 \
-    }
+#define PAIR_CASE(tag, Struct, name) \
+    case tag: result = name##_evaluate(name##_resolve(name##_record(record_index(ref)), c), c, wo, wi); break;
 SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
-    SurfacePair result = SurfacePair(Spectrum(0), 0.0, 0.0);
+    SurfacePair result = no_surface_pair();
     switch (record_tag(ref)) { SURFACE_CLASSES(PAIR_CASE) }
     return result;
 }
 // Of a surface of any class, in a kernel for one class too.
 #ifdef ONLY_SURFACE_CLASS
 SurfacePair surface_pair_of_any(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
-    SurfacePair result = SurfacePair(Spectrum(0), 0.0, 0.0);
+    SurfacePair result = no_surface_pair();
     switch (record_tag(ref)) { ALL_SURFACE_CLASSES(PAIR_CASE) }
     return result;
 }
@@ -109,35 +81,57 @@ SurfacePair surface_pair_of_any(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
 #endif
 #undef PAIR_CASE
 
-// All of an event at once: scattering towards wi, and a sample. The pdfs of the way back only where paths need them.
+// All of an event at once: scattering towards wi, and a sample. The class is visited and its textures are read once.
 struct SurfaceEvent {
     SurfacePair pair;
     BsdfSample next;
     float next_pdf_reverse;
 };
-#if BIDIRECTIONAL
-#define IF_BIDIRECTIONAL(x) x
-#else
-#define IF_BIDIRECTIONAL(x)
-#endif
+
+// Weight and pdf of a sample, if it is no delta event, by its pair of directions.
+void complete(inout SurfaceEvent event, SurfacePair pair) {
+    if (event.next.event == EVENT_NONE || (event.next.event & EVENT_DELTA) != 0u) return;
+    event.next.pdf = pair.pdf;
+    event.next.weight = pair.pdf > 0.0 ? pair.value / pair.pdf : Spectrum(0);
+    event.next_pdf_reverse = pair.pdf_reverse;
+    if (!(pair.pdf > 0.0)) event.next = no_bsdf_sample();
+}
 
 SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 u) {
-    SurfaceEvent result = SurfaceEvent(SurfacePair(Spectrum(0), 0.0, 0.0), no_bsdf_sample(), 0.0);
+    SurfaceEvent result = SurfaceEvent(no_surface_pair(), no_bsdf_sample(), 0.0);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name)                                                         \
-    case tag: {                                                                        \
-        Struct r = name##_resolve(name##_record(record_index(ref)), c);                \
-        result.pair.value = name##_eval(r, c, wo, wi);                                 \
-        result.pair.pdf = name##_pdf(r, c, wo, wi);                                    \
-        result.next = name##_sample(r, c, wo, u);                                      \
-        IF_BIDIRECTIONAL(result.pair.pdf_reverse = name##_pdf(r, c, wi, wo);           \
-                         result.next_pdf_reverse = name##_pdf(r, c, result.next.wi, wo);) \
-        break;                                                                         \
+// A loop over both directions, so that the code of `evaluate` stands once.
+#define CASE(tag, Struct, name)                                                              \
+    case tag: {                                                                             \
+        Struct r = name##_resolve(name##_record(record_index(ref)), c);                     \
+        result.next = name##_sample(r, c, wo, u);                                           \
+        for (uint i = 0u; i < 2u; ++i) {                                                    \
+            SurfacePair pair = name##_evaluate(r, c, wo, i == 0u ? wi : result.next.wi);    \
+            if (i == 0u) result.pair = pair;                                                \
+            else complete(result, pair);                                                    \
+        }                                                                                   \
+        break;                                                                              \
     }
         SURFACE_CLASSES(CASE)
 #undef CASE
     }
     return result;
+}
+
+BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
+    SurfaceEvent result = SurfaceEvent(no_surface_pair(), no_bsdf_sample(), 0.0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name)                                              \
+    case tag: {                                                             \
+        Struct r = name##_resolve(name##_record(record_index(ref)), c);     \
+        result.next = name##_sample(r, c, wo, u);                           \
+        complete(result, name##_evaluate(r, c, wo, result.next.wi));        \
+        break;                                                              \
+    }
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result.next;
 }
 
 Spectrum surface_transparency(uint ref, SurfaceContext c, vec3 wo) {

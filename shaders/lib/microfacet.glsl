@@ -79,6 +79,11 @@ float ggx_refraction_pdf(vec3 wo, vec3 wi, vec3 h, float alpha, float eta) {
     return ggx_visible_d(wo, h, alpha) * refraction_jacobian(wo, wi, h, eta);
 }
 
+// Density of the way back from wi (below) to wo, 1/sr: both turned around, which leaves the facet where it is.
+float ggx_refraction_pdf_reverse(vec3 wo, vec3 wi, vec3 h, float alpha, float eta) {
+    return ggx_refraction_pdf(-wi, -wo, h, alpha, 1.0 / eta);
+}
+
 // An interface between media so near to each other that refraction turns light by less than floats resolve
 // counts as smooth, however rough it is.
 bool interface_is_smooth(float alpha, float ior_above, float ior_below) {

@@ -130,7 +130,8 @@ bool principled_transmits_straight(PrincipledMaterial m) {
 
 // `sample` first chooses among what passes straight on, the diffuse part, coat, sheen and the facets.
 struct PrincipledChoice {
-    Spectrum straight;  // part of the light
+    Spectrum reflected, transmitted;  // by the level surface, but what passes straight on:
+    Spectrum straight;                // part of the light
     float straight_probability, diffuse_probability, coat_probability, sheen_probability, facet_probability;  // sum 1
 };
 
@@ -143,6 +144,7 @@ PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
         choice.straight = m.coverage * transmitted;
         transmitted = Spectrum(0);
     }
+    choice.reflected = reflected, choice.transmitted = transmitted;
     float passes = principled_layers_pass(m, mu_o);
     choice.straight = Spectrum(1.0 - m.coverage) + passes * choice.straight;
     float average;
@@ -167,7 +169,7 @@ PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
 }
 
 // f |cos wi| and its pdf, for wo above; directions turned.
-Spectrum principled_evaluate(PrincipledMaterial m, vec3 wo, vec3 wi, out float pdf) {
+Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float pdf) {
     PrincipledChoice choice = principled_choice(m, wo.z);
     bool reflects = wi.z > 0.0;
     vec3 mirrored = vec3(wi.xy, abs(wi.z));
@@ -205,13 +207,10 @@ Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoi
     Spectrum value = Spectrum(0);
     probability = 0.0;
     if (m.smooth_facets) {
-        Spectrum reflected, transmitted;
-        principled_facet(m, wo.z, reflected, transmitted);
-        if (principled_transmits_straight(m)) transmitted = Spectrum(0);
-        float part = principled_reflection_part(reflected, transmitted);
+        float part = principled_reflection_part(choice.reflected, choice.transmitted);
         probability = choice.facet_probability * (reflects ? part : 1.0 - part);
         value = principled_layers_pass(m, wo.z, abs(wi.z)) *
-                (reflects ? reflected : transmitted * principled_transmission_scale(m));
+                (reflects ? choice.reflected : choice.transmitted * principled_transmission_scale(m));
     }
     if (reflects && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA) {
         probability += choice.coat_probability;

@@ -28,8 +28,11 @@ struct PrincipledMaterial {
     PrincipledWidth alpha;  // GGX width
     vec2 axis;          // in the local xy plane, along which alpha.x is
     bool smooth_facets; // what the facets reflect and transmit is not scattered
-    float eta;          // index of the medium on the far side over that on the side of wo
     bool importance;
+    float through;      // part of the diffuse light that is to go through,
+    Spectrum sent;      //   and its color
+    float near;         // index of the medium on the side of wo; this and what follows by principled_face:
+    float eta;          // index of the medium on the far side over that
     Spectrum diffuse_reflected, diffuse_transmitted;  // parts of the diffuse light, as power
     float coat;         // covered part
     float coat_alpha;
@@ -39,7 +42,6 @@ struct PrincipledMaterial {
 #ifndef ABSENT_principled_iridescence
     float iridescence;
     float film, film_thickness;   // index, nm
-    float near;                   // index of the medium on the side of wo
     Spectrum dielectric_index, metal_index;  // in air
 #endif
 };
@@ -52,7 +54,7 @@ Spectrum principled_index(Spectrum f0) {
 }
 #endif
 
-PrincipledMaterial principled_material(Principled r, SurfaceContext c, float side) {
+PrincipledMaterial principled_material(Principled r, SurfaceContext c) {
     PrincipledMaterial m;
     float alpha = clamp(r.base_color.a, 0.0, 1.0);
     m.coverage = r.alpha_mode == 0u ? 1.0 : r.alpha_mode == 1u ? (alpha < r.alpha_cutoff ? 0.0 : 1.0) : alpha;
@@ -78,19 +80,13 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c, float sid
 #endif
     m.smooth_facets = width < SMOOTH_ALPHA || (!m.thin && m.transmitter > 0.0 &&
                                                interface_is_smooth(width, c.ior_above, c.ior_below));
-    m.eta = side < 0.0 ? c.ior_above / c.ior_below : c.ior_below / c.ior_above;
     m.importance = c.importance;
-    float through = clamp(r.diffuse_transmission, 0.0, 1.0);
-    m.diffuse_reflected = m.color, m.diffuse_transmitted = Spectrum(0);
-    if (through > 0.0) {
-        Spectrum sent = through * factor_of_rgb(clamp(r.diffuse_transmission_color, vec3(0), vec3(1)));
-        m.diffuse_transmitted = sent * min(m.eta * m.eta, 1.0);
-        m.diffuse_reflected = (1.0 - through) * m.color + (sent - m.diffuse_transmitted);
-    }
+    m.through = clamp(r.diffuse_transmission, 0.0, 1.0);
+    m.sent = Spectrum(0);
+    if (m.through > 0.0) m.sent = m.through * factor_of_rgb(clamp(r.diffuse_transmission_color, vec3(0), vec3(1)));
 #ifndef ABSENT_principled_iridescence
     m.iridescence = clamp(r.iridescence, 0.0, 1.0);
     m.film = r.iridescence_ior, m.film_thickness = r.iridescence_thickness_maximum;
-    m.near = side < 0.0 ? c.ior_below : c.ior_above;
     m.dielectric_index = principled_index(m.f0 / max(m.f90, 1e-6));
     m.metal_index = principled_index(m.color);
 #endif
@@ -102,6 +98,14 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c, float sid
         m.sheen_most = max_component(m.sheen);
     }
     return m;
+}
+
+// The material as it is for light that comes from above (side 1) or below (-1).
+void principled_face(inout PrincipledMaterial m, SurfaceContext c, float side) {
+    m.near = side < 0.0 ? c.ior_below : c.ior_above;
+    m.eta = (side < 0.0 ? c.ior_above : c.ior_below) / m.near;
+    m.diffuse_transmitted = m.sent * min(m.eta * m.eta, 1.0);
+    m.diffuse_reflected = (1.0 - m.through) * m.color + (m.sent - m.diffuse_transmitted);
 }
 
 // Directions in the frame whose x axis is the one of alpha.x, and back.

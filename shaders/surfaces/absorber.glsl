@@ -5,8 +5,7 @@ struct Absorber {
 
 Absorber absorber_resolve(Absorber r, SurfaceContext c) { return r; }
 
-Spectrum absorber_eval(Absorber r, SurfaceContext c, vec3 wo, vec3 wi) { return Spectrum(0); }
-float absorber_pdf(Absorber r, SurfaceContext c, vec3 wo, vec3 wi) { return 0.0; }
+SurfacePair absorber_evaluate(Absorber r, SurfaceContext c, vec3 wo, vec3 wi) { return no_surface_pair(); }
 BsdfSample absorber_sample(Absorber r, SurfaceContext c, vec3 wo, vec3 u) { return no_bsdf_sample(); }
 Spectrum absorber_transparency(Absorber r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
 bool absorber_is_delta(Absorber r, SurfaceContext c) { return true; }

@@ -5,8 +5,7 @@ struct Boundary {
 
 Boundary boundary_resolve(Boundary r, SurfaceContext c) { return r; }
 
-Spectrum boundary_eval(Boundary r, SurfaceContext c, vec3 wo, vec3 wi) { return Spectrum(0); }
-float boundary_pdf(Boundary r, SurfaceContext c, vec3 wo, vec3 wi) { return 0.0; }
+SurfacePair boundary_evaluate(Boundary r, SurfaceContext c, vec3 wo, vec3 wi) { return no_surface_pair(); }
 
 BsdfSample boundary_sample(Boundary r, SurfaceContext c, vec3 wo, vec3 u) {
     return BsdfSample(-wo, Spectrum(1), 1.0, EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT);

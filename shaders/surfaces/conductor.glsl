@@ -42,25 +42,21 @@ float conductor_multiscatter_part(Conductor r, float mu_o) {
     return r.multiscatter ? ggx_multiscatter_part(ggx_loss(mu_o, r.alpha)) : 0.0;
 }
 
-Spectrum conductor_eval(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
+SurfacePair conductor_evaluate(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
     float side = wo.z < 0.0 ? -1.0 : 1.0;
     wo.z *= side, wi.z *= side;
-    if (wi.z <= 0.0 || r.alpha < SMOOTH_ALPHA) return Spectrum(0);
+    if (wi.z <= 0.0 || r.alpha < SMOOTH_ALPHA) return no_surface_pair();
     vec3 h = reflection_normal(wo, wi);
-    Spectrum f = conductor_fresnel(r, c, side, dot(wo, h)) * ggx_reflection(wo, wi, h, r.alpha);
-    if (r.multiscatter)
-        f += conductor_multiscatter_tint(r, c, side) * (ggx_loss(wo.z, r.alpha) * ggx_loss(wi.z, r.alpha) *
-                                                        wi.z / (PI * ggx_average_loss(r.alpha)));
-    return f;
-}
-
-float conductor_pdf(Conductor r, SurfaceContext c, vec3 wo, vec3 wi) {
-    float side = wo.z < 0.0 ? -1.0 : 1.0;
-    wo.z *= side, wi.z *= side;
-    if (wi.z <= 0.0 || r.alpha < SMOOTH_ALPHA) return 0.0;
-    float multiscatter = conductor_multiscatter_part(r, wo.z);
-    float single = ggx_reflection_pdf(wo, reflection_normal(wo, wi), r.alpha);
-    return mix(single, ggx_multiscatter_pdf(wi.z, r.alpha), multiscatter);
+    SurfacePair pair;
+    pair.value = conductor_fresnel(r, c, side, dot(wo, h)) * ggx_reflection(wo, wi, h, r.alpha);
+    pair.pdf = ggx_reflection_pdf(wo, h, r.alpha), pair.pdf_reverse = ggx_reflection_pdf(wi, h, r.alpha);
+    if (r.multiscatter) {
+        pair.value += conductor_multiscatter_tint(r, c, side) * (ggx_loss(wo.z, r.alpha) * ggx_loss(wi.z, r.alpha) *
+                                                                 wi.z / (PI * ggx_average_loss(r.alpha)));
+        pair.pdf = mix(pair.pdf, ggx_multiscatter_pdf(wi.z, r.alpha), conductor_multiscatter_part(r, wo.z));
+        pair.pdf_reverse = mix(pair.pdf_reverse, ggx_multiscatter_pdf(wo.z, r.alpha), conductor_multiscatter_part(r, wi.z));
+    }
+    return pair;
 }
 
 BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {
@@ -73,14 +69,7 @@ BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {
     vec3 wi = 2.0 * dot(wo, h) * h - wo;
     if (u.z < conductor_multiscatter_part(r, wo.z)) wi = ggx_sample_multiscatter(u.xy, r.alpha);
     if (wi.z <= 0.0) return no_bsdf_sample();
-    if (!r.multiscatter) {
-        Spectrum weight = conductor_fresnel(r, c, side, dot(wo, h)) * ggx_g1(wi.z, r.alpha);
-        float pdf = ggx_reflection_pdf(wo, h, r.alpha);
-        return BsdfSample(vec3(wi.xy, wi.z * side), weight, pdf, EVENT_REFLECT);
-    }
-    wo.z *= side, wi.z *= side;
-    float pdf = conductor_pdf(r, c, wo, wi);
-    return BsdfSample(wi, conductor_eval(r, c, wo, wi) / pdf, pdf, EVENT_REFLECT);
+    return scattered(vec3(wi.xy, wi.z * side), EVENT_REFLECT);
 }
 
 Spectrum conductor_transparency(Conductor r, SurfaceContext c, vec3 wo) { return Spectrum(0); }

@@ -33,34 +33,36 @@ float dielectric_multiscatter_part(Dielectric r, float mu_o, float eta) {
     return r.multiscatter ? ggx_multiscatter_part(ggx_dielectric_loss(mu_o, r.alpha, eta)) : 0.0;
 }
 
-Spectrum dielectric_eval(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
-    if (dielectric_is_delta(r, c)) return Spectrum(0);
-    float side = wo.z < 0.0 ? -1.0 : 1.0;
-    wo.z *= side, wi.z *= side;
-    float eta = dielectric_eta(c, side);
-    bool reflects = wi.z > 0.0;
-    vec3 h = reflects ? reflection_normal(wo, wi) : refraction_normal(wo, wi, eta);
-    float f = fresnel_dielectric(dot(wo, h), eta);
-    float value = reflects ? f * ggx_reflection(wo, wi, h, r.alpha)
-                           : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta) * ggx_g1(-wi.z, r.alpha);
-    if (r.multiscatter) value += ggx_dielectric_multiscatter(wo.z, wi.z, r.alpha, eta);
-    return Spectrum(reflects ? value : value * dielectric_transmission_scale(c, eta));
+// Density of scattering at facets more than once, with |cos| mu_i, in the mix with `single`.
+float dielectric_multiscatter_mix(Dielectric r, float single, float mu_o, float mu_i, bool reflects, float eta) {
+    float transmitted = ggx_dielectric_multiscatter_transmission(r.alpha, eta);
+    float lobe = ggx_multiscatter_pdf(mu_i, r.alpha) * (reflects ? 1.0 - transmitted : transmitted);
+    return mix(single, lobe, dielectric_multiscatter_part(r, mu_o, eta));
 }
 
-float dielectric_pdf(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
-    if (dielectric_is_delta(r, c)) return 0.0;
+SurfacePair dielectric_evaluate(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
+    if (dielectric_is_delta(r, c)) return no_surface_pair();
     float side = wo.z < 0.0 ? -1.0 : 1.0;
     wo.z *= side, wi.z *= side;
     float eta = dielectric_eta(c, side);
     bool reflects = wi.z > 0.0;
     vec3 h = reflects ? reflection_normal(wo, wi) : refraction_normal(wo, wi, eta);
     float f = fresnel_dielectric(dot(wo, h), eta);
-    float single = reflects ? f * ggx_reflection_pdf(wo, h, r.alpha)
-                            : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta);
-    if (!r.multiscatter) return single;
-    float transmitted = ggx_dielectric_multiscatter_transmission(r.alpha, eta);
-    float lobe = ggx_multiscatter_pdf(abs(wi.z), r.alpha) * (reflects ? 1.0 - transmitted : transmitted);
-    return mix(single, lobe, dielectric_multiscatter_part(r, wo.z, eta));
+    float there, back;
+    if (reflects) {
+        there = f * ggx_reflection_pdf(wo, h, r.alpha), back = f * ggx_reflection_pdf(wi, h, r.alpha);
+    } else {
+        there = (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta);
+        back = (1.0 - f) * ggx_refraction_pdf_reverse(wo, wi, h, r.alpha, eta);
+    }
+    float value = there * ggx_g1(abs(wi.z), r.alpha);
+    if (r.multiscatter) {
+        float eta_back = reflects ? eta : 1.0 / eta;
+        value += ggx_dielectric_multiscatter(wo.z, wi.z, r.alpha, eta);
+        there = dielectric_multiscatter_mix(r, there, wo.z, abs(wi.z), reflects, eta);
+        back = dielectric_multiscatter_mix(r, back, abs(wi.z), wo.z, reflects, eta_back);
+    }
+    return SurfacePair(Spectrum(reflects ? value : value * dielectric_transmission_scale(c, eta)), there, back);
 }
 
 BsdfSample dielectric_sample_smooth(SurfaceContext c, vec3 wo, float side, float u) {
@@ -96,17 +98,7 @@ BsdfSample dielectric_sample(Dielectric r, SurfaceContext c, vec3 wo, vec3 u) {
         if (!reflects) wi.z = -wi.z;
     }
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
-    uint event = reflects ? EVENT_REFLECT : EVENT_TRANSMIT;
-    if (!r.multiscatter) {
-        float pdf = reflects ? f * ggx_reflection_pdf(wo, h, r.alpha)
-                             : (1.0 - f) * ggx_refraction_pdf(wo, wi, h, r.alpha, eta);
-        float weight = ggx_g1(abs(wi.z), r.alpha) * (reflects ? 1.0 : dielectric_transmission_scale(c, eta));
-        wi.z *= side;
-        return pdf > 0.0 ? BsdfSample(wi, Spectrum(weight), pdf, event) : no_bsdf_sample();
-    }
-    wo.z *= side, wi.z *= side;
-    float pdf = dielectric_pdf(r, c, wo, wi);
-    return pdf > 0.0 ? BsdfSample(wi, dielectric_eval(r, c, wo, wi) / pdf, pdf, event) : no_bsdf_sample();
+    return scattered(vec3(wi.xy, wi.z * side), reflects ? EVENT_REFLECT : EVENT_TRANSMIT);
 }
 
 Spectrum dielectric_transparency(Dielectric r, SurfaceContext c, vec3 wo) {

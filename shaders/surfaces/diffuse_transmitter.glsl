@@ -34,19 +34,23 @@ float diffuse_transmitter_through(Spectrum reflected, Spectrum transmitted) {
     return r + t > 0.0 ? t / (r + t) : 0.5;
 }
 
-Spectrum diffuse_transmitter_eval(DiffuseTransmitter r, SurfaceContext c, vec3 wo, vec3 wi) {
+// Density of scattering to the other side, or to the same, with |cos| to the normal.
+float diffuse_transmitter_density(DiffuseTransmitter r, float eta, bool passes, float cosine) {
+    Spectrum reflected, transmitted;
+    diffuse_transmitter_parts(r, eta, reflected, transmitted);
+    float through = diffuse_transmitter_through(reflected, transmitted);
+    return INV_PI * cosine * (passes ? through : 1.0 - through);
+}
+
+SurfacePair diffuse_transmitter_evaluate(DiffuseTransmitter r, SurfaceContext c, vec3 wo, vec3 wi) {
     float eta = diffuse_transmitter_eta(c, wo);
+    bool passes = wo.z * wi.z < 0.0;
     Spectrum reflected, transmitted;
     diffuse_transmitter_parts(r, eta, reflected, transmitted);
     if (!c.importance) transmitted /= eta * eta;
-    return (wo.z * wi.z > 0.0 ? reflected : transmitted) * (INV_PI * abs(wi.z));
-}
-
-float diffuse_transmitter_pdf(DiffuseTransmitter r, SurfaceContext c, vec3 wo, vec3 wi) {
-    Spectrum reflected, transmitted;
-    diffuse_transmitter_parts(r, diffuse_transmitter_eta(c, wo), reflected, transmitted);
-    float through = diffuse_transmitter_through(reflected, transmitted);
-    return INV_PI * abs(wi.z) * (wo.z * wi.z > 0.0 ? 1.0 - through : through);
+    return SurfacePair((passes ? transmitted : reflected) * (INV_PI * abs(wi.z)),
+                       diffuse_transmitter_density(r, eta, passes, abs(wi.z)),
+                       diffuse_transmitter_density(r, passes ? 1.0 / eta : eta, passes, abs(wo.z)));
 }
 
 BsdfSample diffuse_transmitter_sample(DiffuseTransmitter r, SurfaceContext c, vec3 wo, vec3 u) {
@@ -54,11 +58,8 @@ BsdfSample diffuse_transmitter_sample(DiffuseTransmitter r, SurfaceContext c, ve
     diffuse_transmitter_parts(r, diffuse_transmitter_eta(c, wo), reflected, transmitted);
     bool passes = u.z < diffuse_transmitter_through(reflected, transmitted);
     vec3 wi = warp_cosine_hemisphere(u.xy);
-    if (wi.z <= 0.0) return no_bsdf_sample();
     if ((wo.z < 0.0) != passes) wi.z = -wi.z;
-    float pdf = diffuse_transmitter_pdf(r, c, wo, wi);
-    if (!(pdf > 0.0)) return no_bsdf_sample();
-    return BsdfSample(wi, diffuse_transmitter_eval(r, c, wo, wi) / pdf, pdf, passes ? EVENT_TRANSMIT : EVENT_REFLECT);
+    return scattered(wi, passes ? EVENT_TRANSMIT : EVENT_REFLECT);
 }
 
 Spectrum diffuse_transmitter_transparency(DiffuseTransmitter r, SurfaceContext c, vec3 wo) { return Spectrum(0); }

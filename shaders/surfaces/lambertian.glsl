@@ -9,20 +9,16 @@ Lambertian lambertian_resolve(Lambertian r, SurfaceContext c) {
     return r;
 }
 
-Spectrum lambertian_eval(Lambertian r, SurfaceContext c, vec3 wo, vec3 wi) {
-    return wo.z * wi.z > 0.0 ? spectrum_value(r.reflectance) * (INV_PI * abs(wi.z)) : Spectrum(0);
-}
-
-float lambertian_pdf(Lambertian r, SurfaceContext c, vec3 wo, vec3 wi) {
-    return wo.z * wi.z > 0.0 ? INV_PI * abs(wi.z) : 0.0;
+SurfacePair lambertian_evaluate(Lambertian r, SurfaceContext c, vec3 wo, vec3 wi) {
+    if (!(wo.z * wi.z > 0.0)) return no_surface_pair();
+    float pdf = INV_PI * abs(wi.z);
+    return SurfacePair(spectrum_value(r.reflectance) * pdf, pdf, INV_PI * abs(wo.z));
 }
 
 BsdfSample lambertian_sample(Lambertian r, SurfaceContext c, vec3 wo, vec3 u) {
     vec3 wi = warp_cosine_hemisphere(u.xy);
-    float pdf = INV_PI * wi.z;
-    if (pdf <= 0.0) return no_bsdf_sample();
     if (wo.z < 0.0) wi.z = -wi.z;
-    return BsdfSample(wi, spectrum_value(r.reflectance), pdf, EVENT_REFLECT);
+    return scattered(wi, EVENT_REFLECT);
 }
 
 Spectrum lambertian_transparency(Lambertian r, SurfaceContext c, vec3 wo) { return Spectrum(0); }

@@ -86,27 +86,28 @@ Principled principled_resolve(Principled r, SurfaceContext c) {
 
 #include "lib/principled_lobes.glsl"
 
-Spectrum principled_eval(Principled r, SurfaceContext c, vec3 wo, vec3 wi) {
-    float side = wo.z < 0.0 ? -1.0 : 1.0;
-    float pdf;
-    wo.z *= side, wi.z *= side;
-    PrincipledMaterial m = principled_material(r, c, side);
-    return principled_evaluate(m, principled_turned(m, wo), principled_turned(m, wi), pdf);
-}
-
-float principled_pdf(Principled r, SurfaceContext c, vec3 wo, vec3 wi) {
-    float side = wo.z < 0.0 ? -1.0 : 1.0;
-    float pdf;
-    wo.z *= side, wi.z *= side;
-    PrincipledMaterial m = principled_material(r, c, side);
-    principled_evaluate(m, principled_turned(m, wo), principled_turned(m, wi), pdf);
-    return pdf;
+SurfacePair principled_evaluate(Principled r, SurfaceContext c, vec3 wo, vec3 wi) {
+    SurfacePair pair = no_surface_pair();
+    PrincipledMaterial m = principled_material(r, c);
+    // There and back: a loop, so that the code stands once.
+    for (uint way = 0u; way < (BIDIRECTIONAL == 1 ? 2u : 1u); ++way) {
+        vec3 from = way == 0u ? wo : wi, to = way == 0u ? wi : wo;
+        float side = from.z < 0.0 ? -1.0 : 1.0;
+        from.z *= side, to.z *= side;
+        principled_face(m, c, side);
+        float pdf;
+        Spectrum value = principled_scattering(m, principled_turned(m, from), principled_turned(m, to), pdf);
+        if (way == 0u) pair.value = value, pair.pdf = pdf;
+        else pair.pdf_reverse = pdf;
+    }
+    return pair;
 }
 
 BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     float side = wo.z < 0.0 ? -1.0 : 1.0;
     wo.z *= side;
-    PrincipledMaterial m = principled_material(r, c, side);
+    PrincipledMaterial m = principled_material(r, c);
+    principled_face(m, c, side);
     PrincipledChoice choice = principled_choice(m, wo.z);
     if (u.z < choice.straight_probability)
         return BsdfSample(vec3(-wo.xy, -wo.z * side), choice.straight / choice.straight_probability,
@@ -142,20 +143,20 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     if (sheen) wi = warp_sphere(vec2(0.5 * u.x, u.y));
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
 
-    BsdfSample result;
-    result.event = (reflects ? EVENT_REFLECT : EVENT_TRANSMIT) | (is_delta ? EVENT_DELTA : 0u);
-    if (is_delta)
+    BsdfSample result = scattered(principled_turned_back(m, wi) * vec3(1, 1, side), reflects ? EVENT_REFLECT : EVENT_TRANSMIT);
+    if (is_delta) {
         result.weight = principled_delta(m, wo, wi, choice, result.pdf);
-    else
-        result.weight = principled_evaluate(m, wo, wi, result.pdf);
-    if (!(result.pdf > 0.0)) return no_bsdf_sample();
-    result.weight /= result.pdf;
-    result.wi = principled_turned_back(m, wi) * vec3(1, 1, side);
+        if (!(result.pdf > 0.0)) return no_bsdf_sample();
+        result.weight /= result.pdf;
+        result.event |= EVENT_DELTA;
+    }
     return result;
 }
 
 Spectrum principled_transparency(Principled r, SurfaceContext c, vec3 wo) {
-    return principled_choice(principled_material(r, c, wo.z < 0.0 ? -1.0 : 1.0), abs(wo.z)).straight;
+    PrincipledMaterial m = principled_material(r, c);
+    principled_face(m, c, wo.z < 0.0 ? -1.0 : 1.0);
+    return principled_choice(m, abs(wo.z)).straight;
 }
 
 bool principled_is_delta(Principled r, SurfaceContext c) {
@@ -163,7 +164,7 @@ bool principled_is_delta(Principled r, SurfaceContext c) {
                     r.anisotropy_texture.index & r.clearcoat_texture.index & r.clearcoat_roughness_texture.index &
                     r.sheen_color_texture.index;
     r.base_color *= c.color;
-    PrincipledMaterial m = principled_material(r, c, 1.0);
+    PrincipledMaterial m = principled_material(r, c);
     bool has_layers = m.sheen_most > 0.0 || (m.coat > 0.0 && m.coat_alpha >= SMOOTH_ALPHA);
     return textures == NO_RECORD && (m.coverage == 0.0 || (m.smooth_facets && m.opaque == 0.0 && !has_layers));
 }

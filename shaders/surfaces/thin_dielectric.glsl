@@ -14,8 +14,7 @@ float thin_dielectric_reflectance(ThinDielectric r, SurfaceContext c, vec3 wo) {
     return 2.0 * f / (1.0 + f);
 }
 
-Spectrum thin_dielectric_eval(ThinDielectric r, SurfaceContext c, vec3 wo, vec3 wi) { return Spectrum(0); }
-float thin_dielectric_pdf(ThinDielectric r, SurfaceContext c, vec3 wo, vec3 wi) { return 0.0; }
+SurfacePair thin_dielectric_evaluate(ThinDielectric r, SurfaceContext c, vec3 wo, vec3 wi) { return no_surface_pair(); }
 
 BsdfSample thin_dielectric_sample(ThinDielectric r, SurfaceContext c, vec3 wo, vec3 u) {
     float f = thin_dielectric_reflectance(r, c, wo);

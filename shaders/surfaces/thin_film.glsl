@@ -59,33 +59,23 @@ float thin_film_reflection_part(ThinFilmSide s, Spectrum reflected) {
     return s.metal ? 1.0 : clamp(brightness(reflected), 0.02, 0.98);
 }
 
-Spectrum thin_film_evaluate(ThinFilm r, ThinFilmSide s, vec3 wo, vec3 wi, out float pdf) {
-    pdf = 0.0;
+SurfacePair thin_film_evaluate(ThinFilm r, SurfaceContext c, vec3 wo, vec3 wi) {
+    if (thin_film_is_delta(r, c)) return no_surface_pair();
+    float side = wo.z < 0.0 ? -1.0 : 1.0;
+    wo.z *= side, wi.z *= side;
+    ThinFilmSide s = thin_film_side(r, c, side);
     bool reflects = wi.z > 0.0;
-    if (!reflects && s.metal) return Spectrum(0);
+    if (!reflects && s.metal) return no_surface_pair();
     vec3 h = reflects ? reflection_normal(wo, wi) : refraction_normal(wo, wi, s.eta);
+    // The same from both sides.
     Spectrum f = thin_film_facet(r, dot(wo, h), s.near, s.far);
     float part = thin_film_reflection_part(s, f);
-    float facet_pdf = reflects ? ggx_reflection_pdf(wo, h, r.alpha) : ggx_refraction_pdf(wo, wi, h, r.alpha, s.eta);
-    pdf = facet_pdf * (reflects ? part : 1.0 - part);
-    return (reflects ? f : (1.0 - f) * s.scale) * (facet_pdf * ggx_g1(abs(wi.z), r.alpha));
-}
-
-Spectrum thin_film_eval(ThinFilm r, SurfaceContext c, vec3 wo, vec3 wi) {
-    if (thin_film_is_delta(r, c)) return Spectrum(0);
-    float side = wo.z < 0.0 ? -1.0 : 1.0;
-    float pdf;
-    wo.z *= side, wi.z *= side;
-    return thin_film_evaluate(r, thin_film_side(r, c, side), wo, wi, pdf);
-}
-
-float thin_film_pdf(ThinFilm r, SurfaceContext c, vec3 wo, vec3 wi) {
-    if (thin_film_is_delta(r, c)) return 0.0;
-    float side = wo.z < 0.0 ? -1.0 : 1.0;
-    float pdf;
-    wo.z *= side, wi.z *= side;
-    thin_film_evaluate(r, thin_film_side(r, c, side), wo, wi, pdf);
-    return pdf;
+    float there = ggx_reflection_pdf(wo, h, r.alpha), back = ggx_reflection_pdf(wi, h, r.alpha);
+    if (!reflects) {
+        there = ggx_refraction_pdf(wo, wi, h, r.alpha, s.eta), back = ggx_refraction_pdf_reverse(wo, wi, h, r.alpha, s.eta);
+        part = 1.0 - part;
+    }
+    return SurfacePair((reflects ? f : (1.0 - f) * s.scale) * (there * ggx_g1(abs(wi.z), r.alpha)), there * part, back * part);
 }
 
 BsdfSample thin_film_sample(ThinFilm r, SurfaceContext c, vec3 wo, vec3 u) {
@@ -102,16 +92,12 @@ BsdfSample thin_film_sample(ThinFilm r, SurfaceContext c, vec3 wo, vec3 u) {
     if (!reflects && !refract_direction(wo, h, cos_o, s.eta, wi)) return no_bsdf_sample();
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
 
-    BsdfSample result;
-    result.event = reflects ? EVENT_REFLECT : EVENT_TRANSMIT;
+    BsdfSample result = scattered(wi, reflects ? EVENT_REFLECT : EVENT_TRANSMIT);
     if (is_delta) {
         result.event |= EVENT_DELTA;
         result.pdf = reflects ? part : 1.0 - part;
         result.weight = (reflects ? f : (1.0 - f) * s.scale) / result.pdf;
         if (!reflects && s.eta == 1.0) wi = -wo, result.event |= EVENT_STRAIGHT;
-    } else {
-        result.weight = thin_film_evaluate(r, s, wo, wi, result.pdf) / max(result.pdf, 1e-30);
-        if (!(result.pdf > 0.0)) return no_bsdf_sample();
     }
     result.wi = vec3(wi.xy, wi.z * side);
     return result;

@@ -23,17 +23,18 @@ struct Velvet {
 };
 
 Velvet velvet_resolve(Velvet r, SurfaceContext c) { return r; }
-float velvet_pdf(Velvet r, SurfaceContext c, vec3 wo, vec3 wi) {
-    return wo.z * wi.z > 0.0 ? (r.exponent + 1.0) * 0.5 * INV_PI * pow(abs(wi.z), r.exponent) : 0.0;
+float velvet_pdf(Velvet r, float cosine) {
+    return (r.exponent + 1.0) * 0.5 * INV_PI * pow(abs(cosine), r.exponent);
 }
-Spectrum velvet_eval(Velvet r, SurfaceContext c, vec3 wo, vec3 wi) {
-    return spectrum_value(r.tint) * velvet_pdf(r, c, wo, wi);
+SurfacePair velvet_evaluate(Velvet r, SurfaceContext c, vec3 wo, vec3 wi) {
+    if (!(wo.z * wi.z > 0.0)) return no_surface_pair();
+    float pdf = velvet_pdf(r, wi.z);
+    return SurfacePair(spectrum_value(r.tint) * pdf, pdf, velvet_pdf(r, wo.z));
 }
 BsdfSample velvet_sample(Velvet r, SurfaceContext c, vec3 wo, vec3 u) {
     float z = pow(1.0 - u.x, 1.0 / (r.exponent + 1.0));
     float s = sqrt(max(0.0, 1.0 - z * z)), phi = 6.2831853 * u.y;
-    vec3 wi = vec3(s * cos(phi), s * sin(phi), wo.z < 0.0 ? -z : z);
-    return BsdfSample(wi, spectrum_value(r.tint), velvet_pdf(r, c, wo, wi), EVENT_REFLECT);
+    return scattered(vec3(s * cos(phi), s * sin(phi), wo.z < 0.0 ? -z : z), EVENT_REFLECT);
 }
 Spectrum velvet_transparency(Velvet r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
 bool velvet_is_delta(Velvet r, SurfaceContext c) { return false; }

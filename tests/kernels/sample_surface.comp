@@ -1,9 +1,9 @@
-// Draws samples of one surface for one wo, and asks eval and pdf what they say of each.
+// Draws samples of one surface for one wo.
 #include "interfaces/surface_optics.glsl"
 #include "lib/sampler.glsl"
 layout(local_size_x = 64) in;
 
-struct Sample { vec3 wi; float pdf; vec3 weight; uint event; vec3 value; float value_pdf; };
+struct Sample { vec3 wi; float pdf; vec3 weight; uint event; };
 layout(scalar, set = 0) writeonly buffer Samples { Sample samples[]; };
 layout(scalar, set = 0) writeonly buffer Answers { vec4 answers[]; };  // transparency, is_delta and 2 is_opaque
 layout(push_constant) uniform Push {
@@ -24,8 +24,7 @@ void main() {
     const float last = 16777215.0 / 16777216.0;
     if (i < 8u) u = vec3((i & 1u) != 0u ? last : 0.0, (i & 2u) != 0u ? last : 0.0, (i & 4u) != 0u ? last : 0.0);
     BsdfSample s = surface_sample(surface, c, wo, u);
-    samples[i] = Sample(s.wi, s.pdf, s.weight, s.event, surface_eval(surface, c, wo, s.wi),
-                        surface_pdf(surface, c, wo, s.wi));
+    samples[i] = Sample(s.wi, s.pdf, s.weight, s.event);
     if (i == 0u)
         answers[0] = vec4(surface_transparency(surface, c, wo), (surface_is_delta(surface, c) ? 1.0 : 0.0) +
                                                                     (surface_is_opaque(surface, c) ? 2.0 : 0.0));

@@ -24,8 +24,6 @@ struct SurfaceSample {
     float pdf;
     glm::vec3 weight;
     uint32_t event;
-    glm::vec3 value;  // eval and pdf for the same directions
-    float value_pdf;
 };
 
 struct SurfaceSamples {
@@ -40,7 +38,7 @@ struct DirectionPair {
 
 struct SurfaceValue {
     glm::vec3 f_cos;
-    float pdf;
+    float pdf, pdf_reverse;
 };
 
 class SurfaceProbe {
