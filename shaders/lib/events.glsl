@@ -69,7 +69,11 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
         path.passage = 1.0;
 #endif
     }
-    path.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
+#if HAS_STRAIGHT
+    if (straight) path.origin = origin_behind(path.origin, p.position, p.error, p.geometric_normal, direction);
+    else
+#endif
+        path.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
     path.direction = direction;
     path.medium = scattering_medium(s, direction);
     return true;

@@ -156,6 +156,15 @@ vec3 offset_origin(vec3 position, vec3 error, vec3 normal, vec3 direction) {
     return vec3(next_float(p.x, offset.x), next_float(p.y, offset.y), next_float(p.z, offset.z));
 }
 
+// … and where a ray from `from` goes straight on there: never back. At an edge two surfaces may each place the ray before
+// the other one, within their error bounds, and it would never get away.
+vec3 origin_behind(vec3 from, vec3 position, vec3 error, vec3 normal, vec3 direction) {
+    vec3 origin = offset_origin(position, error, normal, direction);
+    if (dot(origin - from, direction) > 0.0) return origin;
+    vec3 a = abs(from);
+    return from + (max(dot(position - from, direction), 0.0) + 16.0 * EPSILON * max(a.x, max(a.y, a.z))) * direction;
+}
+
 // Emissive primitives: triangles in world space, or shapes. All pdfs are per world area, 1/m².
 
 // Evenly by area, of a shape by that of its local frame. `error`: bound of the distance from the exact surface, per axis, m.

@@ -51,7 +51,7 @@ Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
         ScatteringPoint s = scattering_point(p, shadow.direction, shadow.medium);
         shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
         if (is_black(shadow.contribution)) return Spectrum(0);
-        vec3 origin = offset_origin(p.position, p.error, p.geometric_normal, shadow.direction);
+        vec3 origin = origin_behind(shadow.origin, p.position, p.error, p.geometric_normal, shadow.direction);
         t_left = t_left < INFINITY ? t_left - dot(origin - shadow.origin, shadow.direction) : INFINITY;
         if (!(t_left > 0.0)) return weighed(shadow);
         shadow.origin = origin;
