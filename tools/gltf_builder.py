@@ -43,6 +43,7 @@ class Gltf:
         self.lights, self.accessors, self.views, self.media = [], [], [], []
         self.environment = None
         self.data = bytearray()
+        self.files = {}  # name -> bytes, written beside the scene
         self.extensions = {"ETD_optics"}
 
     # Materials. `surface` is a class of ETD_optics with its parameters; `glowing` adds emission.
@@ -211,6 +212,8 @@ class Gltf:
             root["buffers"] = [{"byteLength": len(self.data), "uri": uri}]
         root = {key: value for key, value in root.items() if value != [] and value != {}}
         path.write_text(_text(_rounded(root)), encoding="utf-8")
+        for name, content in self.files.items():
+            (path.parent / name).write_bytes(content)
 
     def _material(self, material):
         self.materials.append(material)

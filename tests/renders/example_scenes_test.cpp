@@ -46,6 +46,17 @@ TEST_CASE("example furnace_closed: 2 in every direction of a closed sphere that 
     check_uniform("furnace_closed", 32, 2, 0.003);
 }
 
+TEST_CASE("example cloud: bright above, grey below, and its shadow on the plain") {
+    const Estimates e = render_example("cloud", 240, 160, 32);
+    const auto mean = [&](uint32_t x, uint32_t y) { return window_mean(e, {x - 5, y - 3, 10, 6}, 1).mean; };
+    const double sunlit = mean(135, 40), base = mean(110, 65), plain = mean(30, 148), shadow = mean(205, 148);
+    MESSAGE("sunlit ", sunlit, ", base ", base, ", plain ", plain, ", shadow ", shadow);
+    CHECK(sunlit > 1.25 * base);
+    CHECK(base > shadow);
+    CHECK(plain > 2 * shadow);
+    CHECK(e.counters.depth_limit == 0);
+}
+
 TEST_CASE("example lamps: the floor below a spot, below the same behind a pane, and below a square lamp") {
     const Estimates e = render_example("lamps", 240, 135, 16);
     const auto below = [&](uint32_t x) { return window_mean(e, {x - 2, 92, 5, 3}, 1).mean; };
