@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/error.h"
+#include "host/gpu/buffer_addresses.h"
 
 namespace etendue {
 namespace {
@@ -16,16 +17,28 @@ constexpr uint32_t max_timed_dispatches = 1024;  // a command list; later ones r
 
 Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& buffers)
     : device_(&device), name_(shader.name), layout_(reflect_shader(shader.spirv)) {
+    const AddressedShader addressed = use_addresses(shader.spirv);
+    std::vector<uint64_t> addresses(addressed.blocks.size());
     std::map<uint32_t, const Buffer*> bound;  // several blocks may be views of one binding
     for (const BlockLayout& block : layout_.blocks) {
         const auto found = buffers.find(block.name);
         if (found == buffers.end())
             fail_device("kernel {} reads buffer {}, which the host does not bind", name_, block.name);
+        const auto place = std::find(addressed.blocks.begin(), addressed.blocks.end(), block.block_name);
+        if (place != addressed.blocks.end()) {
+            addresses[size_t(place - addressed.blocks.begin())] = found->second->address();
+            continue;
+        }
         if (found->second->bytes() > device.description.max_buffer_range)
             fail_device("{} needs {:.0f} MiB in one binding; this device allows {:.0f} MiB", block.name,
                         double(found->second->bytes()) / 1048576.0,
                         double(device.description.max_buffer_range) / 1048576.0);
         bound[block.binding] = found->second;
+    }
+
+    if (!addresses.empty()) {
+        addresses_ = create_buffer(device, std::span<const uint64_t>(addresses), name_ + " addresses");
+        bound[addressed.binding] = &addresses_;
     }
 
     std::vector<VkDescriptorSetLayoutBinding> bindings;
@@ -48,8 +61,8 @@ Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& 
           "vkCreatePipelineLayout");
 
     VkShaderModuleCreateInfo module_info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
-    module_info.codeSize = shader.spirv.size() * 4;
-    module_info.pCode = shader.spirv.data();
+    module_info.codeSize = addressed.spirv.size() * 4;
+    module_info.pCode = addressed.spirv.data();
     VkShaderModule module = VK_NULL_HANDLE;
     check(vkCreateShaderModule(device.handle, &module_info, nullptr, &module), "vkCreateShaderModule");
     VkComputePipelineCreateInfo info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
@@ -100,6 +113,7 @@ void Kernel::swap(Kernel& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(name_, other.name_);
     std::swap(layout_, other.layout_);
+    std::swap(addresses_, other.addresses_);
     std::swap(set_layout_, other.set_layout_);
     std::swap(pipeline_layout_, other.pipeline_layout_);
     std::swap(pipeline_, other.pipeline_);

@@ -49,6 +49,7 @@ class Kernel {
     Device* device_ = nullptr;
     std::string name_;
     ShaderLayout layout_;
+    Buffer addresses_;  // of the buffers that are read through them
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
     VkPipelineLayout pipeline_layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;

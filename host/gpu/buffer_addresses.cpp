@@ -1,0 +1,272 @@
+#include "host/gpu/buffer_addresses.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <set>
+#include <spirv/unified1/spirv.hpp>
+
+#include "host/error.h"
+
+namespace etendue {
+namespace {
+
+// One instruction: its words, the first without the count. Operand positions below follow the SPIR-V
+// specification, section 3.49 (instructions).
+using Words = std::vector<uint32_t>;
+
+Words instruction(spv::Op op, std::initializer_list<uint32_t> operands) {
+    Words words{uint32_t(op)};
+    words.insert(words.end(), operands);
+    return words;
+}
+
+struct Block {
+    uint32_t variable, type;  // ids; the type is the block's struct
+    uint32_t address;         // id of the Private variable that holds its address
+    std::string name;
+};
+
+class Rewriter {
+  public:
+    explicit Rewriter(const Spirv& spirv) : header_(spirv.begin(), spirv.begin() + 5) {
+        for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
+            if (spirv[at] >> 16 == 0) fail_device("a compiled shader is not valid SPIR-V");
+            in_.emplace_back(spirv.begin() + long(at), spirv.begin() + long(at + (spirv[at] >> 16)));
+            in_.back()[0] &= 0xFFFF;
+        }
+        read_types();
+        find_blocks();
+    }
+
+    AddressedShader run(const Spirv& unchanged) {
+        AddressedShader result;
+        if (blocks_.empty()) return {unchanged, 0, {}};
+        for (const Block& block : blocks_) result.blocks.push_back(block.name);
+        result.binding = binding_;
+        bool in_functions = false;
+        for (Words& words : in_) {
+            const auto op = spv::Op(words[0]);
+            if (op == spv::OpFunction && !in_functions) {
+                in_functions = true;
+                declare();
+            }
+            rewrite(op, words);
+        }
+        Spirv& spirv = result.spirv = header_;
+        spirv[3] = bound_;
+        for (const Words& words : out_) {
+            spirv.push_back(uint32_t(words.size()) << 16 | words[0]);
+            spirv.insert(spirv.end(), words.begin() + 1, words.end());
+        }
+        return result;
+    }
+
+  private:
+    uint32_t new_id() { return bound_++; }
+    void put(Words words) { out_.push_back(std::move(words)); }
+
+    void read_types() {
+        bound_ = header_[3];
+        for (const Words& w : in_) switch (spv::Op(w[0])) {
+                case spv::OpTypeRuntimeArray:
+                    run_time_arrays_.insert(w[1]);
+                    break;
+                case spv::OpTypeStruct:
+                    struct_members_[w[1]] = {w.begin() + 2, w.end()};
+                    break;
+                case spv::OpTypePointer:
+                    if (w[2] == spv::StorageClassStorageBuffer) pointees_[w[1]] = w[3];
+                    break;
+                case spv::OpTypeInt:
+                    if (w[2] == 32 && w[3] == 0) uint_ = w[1];
+                    if (w[2] == 64) has_wide_types_ = true;
+                    break;
+                case spv::OpTypeFloat:
+                    if (w[2] == 64) has_wide_types_ = true;
+                    break;
+                case spv::OpTypeVector:
+                    if (w[2] == uint_ && w[3] == 2) uvec2_ = w[1];
+                    break;
+                case spv::OpName:
+                    names_[w[1]] =
+                        std::string(reinterpret_cast<const char*>(&w[2]),
+                                    strnlen(reinterpret_cast<const char*>(&w[2]), (w.size() - 2) * 4));
+                    break;
+                case spv::OpDecorate:
+                    if (w[2] == spv::DecorationBinding) bindings_[w[1]] = w[3];
+                    break;
+                default:
+                    break;
+            }
+    }
+
+    // Variables of blocks that end in a run-time array and are used by access chains alone.
+    void find_blocks() {
+        for (const Words& w : in_) {
+            if (w[0] != spv::OpVariable || w[3] != spv::StorageClassStorageBuffer) continue;
+            const uint32_t type = pointees_.at(w[1]);
+            const auto members = struct_members_.find(type);
+            if (members == struct_members_.end() || !run_time_arrays_.count(members->second.back())) continue;
+            blocks_.push_back({w[2], type, 0, names_.at(type)});
+        }
+        const auto is_used_otherwise = [&](const Block& block) {
+            return std::any_of(in_.begin(), in_.end(), [&](const Words& w) {
+                return (w[0] == spv::OpArrayLength || w[0] == spv::OpFunctionCall ||
+                        w[0] == spv::OpCopyObject) &&
+                       std::find(w.begin() + 3, w.end(), block.variable) != w.end();
+            });
+        };
+        blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), is_used_otherwise), blocks_.end());
+        for (const auto& [variable, binding] : bindings_) binding_ = std::max(binding_, binding + 1);
+        for (Block& block : blocks_) block.address = new_id();
+        if (!blocks_.empty()) table_ = new_id(), table_type_ = new_id();
+    }
+
+    const Block* find_block(uint32_t variable) const {
+        const auto found =
+            std::find_if(blocks_.begin(), blocks_.end(), [&](auto& b) { return b.variable == variable; });
+        return found == blocks_.end() ? nullptr : &*found;
+    }
+
+    // The table of addresses, the variables that keep them, and pointer types, behind all other declarations.
+    void declare() {
+        if (!uint_) put(instruction(spv::OpTypeInt, {uint_ = new_id(), 32, 0}));
+        if (!uvec2_) put(instruction(spv::OpTypeVector, {uvec2_ = new_id(), uint_, 2}));
+        Words table = instruction(spv::OpTypeStruct, {table_type_});
+        table.insert(table.end(), blocks_.size(), uvec2_);
+        put(table);
+        const uint32_t to_table = new_id(), to_address = new_id();
+        put(instruction(spv::OpTypePointer, {to_table, spv::StorageClassStorageBuffer, table_type_}));
+        put(instruction(spv::OpVariable, {to_table, table_, spv::StorageClassStorageBuffer}));
+        put(instruction(spv::OpTypePointer,
+                        {table_pointer_ = new_id(), spv::StorageClassStorageBuffer, uvec2_}));
+        put(instruction(spv::OpTypePointer, {to_address, spv::StorageClassPrivate, uvec2_}));
+        for (uint32_t i = 0; i < blocks_.size(); ++i) {
+            put(instruction(spv::OpVariable, {to_address, blocks_[i].address, spv::StorageClassPrivate}));
+            put(instruction(spv::OpConstant, {uint_, new_id(), i}));
+            indices_.push_back(bound_ - 1);
+        }
+        // Of every type that a pointer into a block may have; few are used, which costs nothing.
+        for (const auto& [pointer, pointee] : pointees_)
+            put(instruction(spv::OpTypePointer, {by_address_[pointee] = new_id(),
+                                                 spv::StorageClassPhysicalStorageBuffer, pointee}));
+    }
+
+    void decorate_table() {
+        put(instruction(spv::OpDecorate, {table_type_, spv::DecorationBlock}));
+        put(instruction(spv::OpDecorate, {table_, spv::DecorationDescriptorSet, 0}));
+        put(instruction(spv::OpDecorate, {table_, spv::DecorationBinding, binding_}));
+        for (uint32_t i = 0; i < blocks_.size(); ++i) {
+            put(instruction(spv::OpMemberDecorate, {table_type_, i, spv::DecorationOffset, 8 * i}));
+            put(instruction(spv::OpMemberDecorate, {table_type_, i, spv::DecorationNonWritable}));
+        }
+    }
+
+    // At the start of the kernel: every address once.
+    void load_addresses() {
+        for (size_t i = 0; i < blocks_.size(); ++i) {
+            const uint32_t at = new_id(), address = new_id();
+            put(instruction(spv::OpAccessChain, {table_pointer_, at, table_, indices_[i]}));
+            put(instruction(spv::OpLoad, {uvec2_, address, at}));
+            put(instruction(spv::OpStore, {blocks_[i].address, address}));
+        }
+    }
+
+    // Accesses through an address state its alignment: that of the widest scalar.
+    void align(Words& words, size_t mask_at) {
+        if (words.size() <= mask_at) words.push_back(0);
+        if (words[mask_at] & spv::MemoryAccessAlignedMask) return;
+        words[mask_at] |= spv::MemoryAccessAlignedMask;
+        words.insert(words.begin() + long(mask_at) + 1, has_wide_types_ ? 8 : 4);
+    }
+
+    void rewrite(spv::Op op, Words& words) {
+        switch (op) {
+            case spv::OpMemoryModel:
+                words[1] = spv::AddressingModelPhysicalStorageBuffer64;
+                break;
+            case spv::OpCapability:
+                if (!has_capability_)
+                    put(instruction(spv::OpCapability, {spv::CapabilityPhysicalStorageBufferAddresses}));
+                has_capability_ = true;
+                if (words[1] == spv::CapabilityPhysicalStorageBufferAddresses) return;
+                break;
+            case spv::OpEntryPoint:
+                entry_ = words[2];
+                words.erase(std::remove_if(words.begin() + 3, words.end(),
+                                           [&](uint32_t id) { return find_block(id); }),
+                            words.end());
+                words.push_back(table_);
+                for (const Block& block : blocks_) words.push_back(block.address);
+                break;
+            case spv::OpName:
+            case spv::OpVariable:
+                if (find_block(words[op == spv::OpName ? 1 : 2])) return;
+                break;
+            case spv::OpDecorate:
+                if (!has_decorations_) decorate_table();
+                has_decorations_ = true;
+                if (find_block(words[1])) return;
+                break;
+            case spv::OpFunction:
+                in_entry_ = words[2] == entry_;
+                break;
+            case spv::OpAccessChain:
+            case spv::OpInBoundsAccessChain:
+                if (const Block* block = find_block(words[3])) {
+                    const uint32_t address = new_id(), pointer = new_id();
+                    put(instruction(spv::OpLoad, {uvec2_, address, block->address}));
+                    put(instruction(spv::OpBitcast, {by_address_.at(block->type), pointer, address}));
+                    words[3] = pointer;
+                } else if (!addressed_.count(words[3])) {
+                    break;
+                }
+                words[1] = by_address_.at(pointees_.at(words[1]));
+                addressed_.insert(words[2]);
+                break;
+            case spv::OpLoad:
+                if (addressed_.count(words[3])) align(words, 4);
+                break;
+            case spv::OpStore:
+                if (addressed_.count(words[1])) align(words, 3);
+                break;
+            default:
+                break;
+        }
+        put(words);
+        // Variables of the function stand before all else in its first block.
+        if (op == spv::OpLabel && in_entry_)
+            at_start_ = true, in_entry_ = false;
+        else if (at_start_ && op != spv::OpVariable) {
+            const Words first = std::move(out_.back());
+            out_.pop_back();
+            load_addresses();
+            put(first);
+            at_start_ = false;
+        }
+    }
+
+    Words header_;
+    std::vector<Words> in_, out_;
+    uint32_t bound_ = 0, binding_ = 0;
+    std::set<uint32_t> run_time_arrays_;
+    std::map<uint32_t, Words> struct_members_;
+    std::map<uint32_t, uint32_t> pointees_;  // of pointers to storage buffers
+    std::map<uint32_t, uint32_t> bindings_;
+    std::map<uint32_t, std::string> names_;
+    bool has_wide_types_ = false;
+    std::vector<Block> blocks_;
+    uint32_t uint_ = 0, uvec2_ = 0, table_ = 0, table_type_ = 0, table_pointer_ = 0;
+    std::vector<uint32_t> indices_;            // constants 0, 1, …
+    std::map<uint32_t, uint32_t> by_address_;  // pointee -> pointer by address
+    std::set<uint32_t> addressed_;             // pointers by address
+    uint32_t entry_ = 0;
+    bool has_capability_ = false, has_decorations_ = false, in_entry_ = false, at_start_ = false;
+};
+
+}  // namespace
+
+AddressedShader use_addresses(const Spirv& spirv) { return Rewriter(spirv).run(spirv); }
+
+}  // namespace etendue
