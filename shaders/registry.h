@@ -37,7 +37,8 @@
     X(6, Boundary, boundary)           \
     X(7, Principled, principled)       \
     X(8, DiffuseTransmitter, diffuse_transmitter) \
-    X(9, ThinFilm, thin_film)
+    X(9, ThinFilm, thin_film)           \
+    X(10, Measured, measured)
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)              \

@@ -45,6 +45,8 @@ std::string Features::defines() const {
     define("TEXELS_BY_ADDRESS", texels_by_address);
     define("ENVIRONMENT_TEXELS_BY_ADDRESS", environment_texels_by_address);
     define("DENSITY_VALUES_BY_ADDRESS", density_values_by_address);
+    define("MEASURED_POINTS_BY_ADDRESS", measured_points_by_address);
+    define("MEASURED_SPECTRA_BY_ADDRESS", measured_spectra_by_address);
     define("FILM_BY_ADDRESS", film_by_address);
     if (spectral_bins > 0) define("SPECTRAL_BINS", spectral_bins);
     define("TEXTURE_FORMATS", texture_formats);

@@ -30,6 +30,8 @@ struct Features {
     bool texels_by_address = false;
     bool environment_texels_by_address = false;
     bool density_values_by_address = false;
+    bool measured_points_by_address = false;
+    bool measured_spectra_by_address = false;
     bool film_by_address = false;  // set by the renderer
     uint32_t spectral_bins = 0;    // of a spectral image; set by the renderer
     uint32_t texture_formats = 7;  // of lib/textures.glsl, a bit each

@@ -91,6 +91,9 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
     } else if (type == "EnvironmentMapRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of an image file", place);
         store(record, at, resolver.environment_map(value.get<std::string>(), where));
+    } else if (type == "MeasuredRef") {
+        if (!value.is_string()) fail_input("{}: allowed: the name of a .json or .bsdf file", place);
+        store(record, at, resolver.measured(value.get<std::string>()));
     } else {
         fail_input("{}: the class's member {} has type {}, which no parameter can fill", place, p.member.name,
                    type);
@@ -155,6 +158,27 @@ void RecordBuffer::layout() {
     }
 }
 
+namespace {
+
+// Only the kinds of measurements that there are need code.
+void add_measured_kinds(const std::vector<std::byte>& records, uint32_t stride, const MemberLayout& member,
+                        ClassConstants& constants) {
+    uint32_t first = 0;
+    bool equal = true, anisotropic = false;
+    for (size_t at = 0; at < records.size(); at += stride) {
+        uint32_t kind;
+        static_assert(offsetof(MeasuredRef, kind) == 0);
+        std::memcpy(&kind, &records[at + member.offset], sizeof(kind));
+        if (at == 0) first = kind;
+        equal = equal && kind == first;
+        anisotropic = anisotropic || (kind & measured_anisotropic);
+    }
+    if (equal) constants.statements += fmt::format("r.{}.kind = {}u; ", member.name, first);
+    constants.macros += fmt::format("#define MEASURED_SLICES {}\n", anisotropic ? 4 : 2);
+}
+
+}  // namespace
+
 ClassConstants RecordBuffer::constant_members(const ClassInfo& info) const {
     const auto region = regions_.find(info.name);
     if (region == regions_.end() || region->second.records.empty()) return {};
@@ -162,6 +186,7 @@ ClassConstants RecordBuffer::constant_members(const ClassInfo& info) const {
     ClassConstants constants;
     for (const Parameter& p : info.parameters) {
         const std::string &type = p.member.type, &name = p.member.name;
+        if (type == "MeasuredRef") add_measured_kinds(records, info.stride, p.member, constants);
         const int length = vector_length(type);
         if (!p.from_scene || (p.member.size != 4 && !length)) continue;
         bool equal = true;

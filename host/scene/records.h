@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "host/measured/measured_bsdf.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
 #include "host/scene/environment_map.h"
@@ -32,6 +33,8 @@ struct RecordResolver {
     // Index of a density in space that is given by a file.
     std::function<uint32_t(const nlohmann::json& value, const std::string& where)> grid =
         [](const nlohmann::json&, const std::string&) { return 0u; };
+    std::function<MeasuredRef(const std::filesystem::path& file)> measured =
+        [](const std::filesystem::path&) { return MeasuredRef{}; };
     // RecordRef of the phase function that stands at that place of the scene.
     std::function<uint32_t(const std::string& where)> phase = [](const std::string&) { return 0xFFFFFFFFu; };
     // Index of the table that a spectrum has where paths carry wavelengths.

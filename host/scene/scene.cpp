@@ -33,6 +33,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     resolver_.grid = [this](const nlohmann::json& value, const std::string& where) {
         return add_grid(value, where);
     };
+    resolver_.measured = [this](const std::filesystem::path& file) { return add_measured(file); };
 }
 
 Scene SceneCompiler::run() {

@@ -62,6 +62,9 @@ class SceneCompiler {
     uint32_t medium_ref(const std::string& name, const std::string& where);
     void add_textures();
 
+    MeasuredRef add_measured(const std::filesystem::path& file);
+    void upload_measured();
+
     // scene_geometry.cpp
     void add_geometry();
     std::vector<Box> shape_bounds(const std::vector<uint32_t>& refs);
@@ -90,7 +93,7 @@ class SceneCompiler {
             options_.binding_bytes ? options_.binding_bytes : device_.description.max_buffer_range;
         by_address = out_.buffers[name].bytes() > limit;
         large_arrays_[slot] = out_.buffers[name].address();
-        upload("LargeArrays", std::vector<uint64_t>(large_arrays_, large_arrays_ + 7));
+        upload("LargeArrays", std::vector<uint64_t>(std::begin(large_arrays_), std::end(large_arrays_)));
     }
 
     Device& device_;
@@ -105,10 +108,12 @@ class SceneCompiler {
     std::vector<DensityGridRecord> grids_;
     std::vector<glm::dmat4> grid_placements_;  // world_from_lattice
     DensityBricks density_bricks_;
+    MeasuredBsdf measured_;                       // of all files, one after the other
+    std::map<std::filesystem::path, MeasuredRef> measured_files_;
     std::vector<MaterialRecord> materials_;
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
     World world_;
-    uint64_t large_arrays_[7] = {};
+    uint64_t large_arrays_[9] = {};
     std::map<std::string, uint32_t> phases_;  // RecordRefs, by their places in the scene
     std::vector<uint32_t> lights_;            // RecordRefs
     uint32_t first_area_light_ = 0;           // in lights_, before they are sorted

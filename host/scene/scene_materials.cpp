@@ -54,10 +54,27 @@ void SceneCompiler::add_materials() {
     ask_opacity();
 }
 
+MeasuredRef SceneCompiler::add_measured(const std::filesystem::path& file) {
+    const auto [place, is_new] = measured_files_.try_emplace(file.is_absolute() ? file : in_.folder / file);
+    if (is_new) {
+        const MeasuredBsdf bsdf = read_measured_bsdf(place->first);
+        place->second = append(measured_, bsdf);
+        place->second.place_table = add_spectrum(bsdf.place, SpectralKind::factor);
+    }
+    return place->second;
+}
+
+void SceneCompiler::upload_measured() {
+    if (measured_files_.empty()) return;
+    upload_large("MeasuredPoints", measured_.points, 7, out_.features.measured_points_by_address);
+    upload("MeasuredColors", measured_.colors);
+}
+
 void SceneCompiler::ask_opacity() {
     if (materials_.empty()) return;
     const uint32_t count = uint32_t(materials_.size());
     write_headers();
+    upload_measured();
     upload("SurfaceRecords", records_[Interface::surface].bytes());
     upload("MediumRecords", records_[Interface::medium].bytes());
     upload("Materials", materials_);

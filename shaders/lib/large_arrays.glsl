@@ -8,6 +8,8 @@
 #define TEXELS_BY_ADDRESS 0
 #define ENVIRONMENT_TEXELS_BY_ADDRESS 0
 #define DENSITY_VALUES_BY_ADDRESS 0
+#define MEASURED_POINTS_BY_ADDRESS 0
+#define MEASURED_SPECTRA_BY_ADDRESS 0
 #endif
 
 layout(scalar, set = 0) readonly buffer LargeArrays {
@@ -18,4 +20,6 @@ layout(scalar, set = 0) readonly buffer LargeArrays {
     uvec2 texels_address;
     uvec2 environment_texels_address;
     uvec2 density_values_address;
+    uvec2 measured_points_address;
+    uvec2 measured_spectra_address;
 };

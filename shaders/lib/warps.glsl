@@ -31,3 +31,11 @@ vec3 warp_sphere(vec2 u) {
 vec2 warp_triangle(vec2 u) {
     return u.x < u.y ? vec2(0.5 * u.x, u.y - 0.5 * u.x) : vec2(u.x - 0.5 * u.y, 0.5 * u.y);
 }
+
+// x with density proportional to mix(a, b, x) on [0, 1].
+float sample_linear(float a, float b, float u) {
+    float scale = max(a, b);
+    if (!(scale > 0.0)) return u;
+    a /= scale, b /= scale;
+    return min(u * (a + b) / (a + sqrt(mix(a * a, b * b, u))), 1.0);
+}

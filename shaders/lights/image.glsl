@@ -85,14 +85,6 @@ vec3 environment_radiance(ImageEnvironment r, vec3 direction) {
     return environment_mix(corners, cell.at);
 }
 
-// x with density proportional to mix(a, b, x) on [0, 1].
-float sample_linear(float a, float b, float u) {
-    float scale = max(a, b);
-    if (!(scale > 0.0)) return u;
-    a /= scale, b /= scale;
-    return min(u * (a + b) / (a + sqrt(mix(a * a, b * b, u))), 1.0);
-}
-
 // The entry of an alias table with `count` entries, of which `own` decides: u in [0,1) is stretched anew over
 // the result.
 uint choose_alias(uint entry, uint other, float threshold, inout float u) {

@@ -18,9 +18,11 @@ struct SurfaceConfiguration {
     // Width of the narrowest lobe: what single precision directions resolve of it limits how well values
     // agree.
     double width = 1;
+    bool is_reciprocal = true;  // tables need not be
 };
 
 std::vector<SurfaceConfiguration> extended_principled();  // principled_extensions_test.cpp
+std::vector<SurfaceConfiguration> measured_files();       // measured_test.cpp
 
 inline std::vector<SurfaceConfiguration> surface_configurations(const std::string& name) {
     using C = SurfaceConfiguration;
@@ -142,6 +144,7 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
                {"k", steel_k},
                {"alpha", 0.2}}}};
     }
+    if (name == "measured") return measured_files();
     if (name == "absorber") return {C{"absorber", nlohmann::json::object(), 1, 1, 0.0}};
     if (name == "boundary") return {C{"boundary", nlohmann::json::object(), 1.33f, 1, 1.0}};
     if (name == "principled") {

@@ -367,7 +367,8 @@ TEST_CASE(
             }
             INFO(c.name, ", ", configuration.label);
             // Near the critical angle the Fresnel term grows like a square root and magnifies rounding.
-            CHECK(high_quantile(reciprocity) < 1e-3 + rounding_tolerance(configuration));
+            if (configuration.is_reciprocal)
+                CHECK(high_quantile(reciprocity) < 1e-3 + rounding_tolerance(configuration));
             CHECK(high_quantile(adjoint) < 1e-3 + rounding_tolerance(configuration));
             CHECK(high_quantile(reverse) < 1e-3 + rounding_tolerance(configuration));
         }

@@ -48,7 +48,11 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
         textures.push_back({v[0].get<float>(), v[1].get<float>(), v[2].get<float>(), v[3].get<float>()});
         return uint32_t(textures.size() - 1);
     };
-    const RecordResolver resolver{scene, {}, add_texture, {}};
+    RecordResolver resolver{scene, {}, add_texture, {}};
+    MeasuredBsdf measured;
+    resolver.measured = [&](const std::filesystem::path& file) {
+        return append(measured, read_measured_bsdf(file));
+    };
     RecordBuffer records;
     for (const nlohmann::json& p : parameters)
         records.add(*info, fill_record(*info, {class_name, p, "/surface"}, std::nullopt, resolver));
@@ -62,14 +66,21 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
 
     Device& device = test_device();
     records_ = create_buffer(device, records.bytes(), "surface records");
+    measured_points_ = create_buffer(device, measured.points, "measured points");
+    measured_colors_ = create_buffer(device, measured.colors, "measured colors");
     samples_ = Buffer(device, max_count * sizeof(SurfaceSample), "surface samples");
     answers_ = Buffer(device, sizeof(glm::vec4), "surface answers");
     pairs_ = Buffer(device, max_count * sizeof(DirectionPair), "direction pairs");
     values_ = Buffer(device, max_count * sizeof(SurfaceValue), "surface values");
     const std::string block = std::string(interface_info(Interface::surface).buffer) + "__" + class_name;
-    BufferTable table{{block, &records_},     {interface_info(Interface::surface).buffer, &records_},
-                      {"Samples", &samples_}, {"Answers", &answers_},
-                      {"Pairs", &pairs_},     {"Values", &values_}};
+    BufferTable table{{block, &records_},
+                      {interface_info(Interface::surface).buffer, &records_},
+                      {"Samples", &samples_},
+                      {"Answers", &answers_},
+                      {"Pairs", &pairs_},
+                      {"Values", &values_},
+                      {"MeasuredPoints", &measured_points_},
+                      {"MeasuredColors", &measured_colors_}};
     sample_ = probe_kernel(sources, "sample_surface.comp", table);
     evaluate_ = probe_kernel(sources, "evaluate_surface.comp", table);
 }

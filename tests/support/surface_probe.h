@@ -53,7 +53,7 @@ class SurfaceProbe {
                                        std::span<const DirectionPair> pairs);
 
   private:
-    Buffer records_, samples_, answers_, pairs_, values_;
+    Buffer records_, samples_, answers_, pairs_, values_, measured_points_, measured_colors_;
     std::vector<uint32_t> refs_;
     Kernel sample_, evaluate_;
 };
