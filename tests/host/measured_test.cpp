@@ -7,7 +7,7 @@
 #include <random>
 
 #include "host/error.h"
-#include "host/measured/tensor_file.h"
+#include "host/measured/measured_bsdf.h"
 #include "host/spectra/color.h"
 #include "tests/support/bsdf_files.h"
 #include "tests/support/temporary_folder.h"
@@ -187,8 +187,10 @@ TEST_CASE("a bad RGL file is one line: the field, and what is allowed") {
     CHECK(folder.complaint(good, "m.bsdf") == "no error");
     check_says(folder.complaint("", "m.bsdf"), {"tensor_file"});
     check_says(folder.complaint("tensor_fool" + good.substr(11), "m.bsdf"), {"tensor_file"});
-    check_says(folder.complaint(good.substr(0, 12) + '\2' + good.substr(13), "m.bsdf"), {"version 2.0", "1.0"});
-    check_says(folder.complaint(good.substr(0, 60), "m.bsdf"), {"list of fields"});
+    check_says(folder.complaint(good.substr(0, 12) + '\2' + good.substr(13), "m.bsdf"),
+               {"version 2.0", "1.0"});
+    check_says(folder.complaint(good.substr(0, 30), "m.bsdf"), {"list of fields"});
+    check_says(folder.complaint(good.substr(0, 60), "m.bsdf"), {"description", "60 bytes"});
     check_says(folder.complaint(good.substr(0, good.size() - 1), "m.bsdf"), {"beyond the end", "rgb"});
     for (const char* name : {"theta_i", "phi_i", "ndf", "sigma", "vndf", "luminance", "rgb", "jacobian"}) {
         TensorFields fields = small_rgl();
