@@ -159,6 +159,10 @@ MeasuredWay measured_halfway_way(MeasuredRef r, vec3 w, vec3 v) {
 }
 
 float measured_sine_square(vec3 w) { return min(dot(w.xy, w.xy), 1.0); }
+vec2 unit_azimuth(vec3 w) {
+    float across = length(w.xy);
+    return across > 0.0 ? w.xy / across : vec2(1, 0);
+}
 
 MeasuredSlices far_slices(MeasuredRef r, MeasuredSlices s) {
     s.index += r.theta_count;
@@ -173,7 +177,8 @@ MeasuredWay measured_direct_way(MeasuredRef r, vec3 w, vec3 v) {
     if (transmits) integral += map_integral(r.density, far_slices(r, way.slices));
     if (!(integral > 0.0) || (passes && !transmits)) return no_measured_way();
     if (passes) way.slices = far_slices(r, way.slices);
-    float turn = accurate_atan2(w.x * v.y - w.y * v.x, dot(w.xy, v.xy)) * (0.5 * INV_PI);
+    vec2 along = unit_azimuth(w);
+    float turn = accurate_atan2(along.x * v.y - along.y * v.x, dot(along, v.xy)) * (0.5 * INV_PI);
     way.place = vec2(list_place(r.swept_first, r.density.width, measured_sine_square(v)),
                      list_place(r.turn_first, r.density.height, turn - floor(turn)));
     way.factor = abs(v.z);
@@ -231,8 +236,7 @@ vec3 measured_direct_direction(MeasuredRef r, vec3 w, vec3 u) {
     vec2 place = map_sample(r.density, s, u.xy);
     float sine_square = list_number(r.swept_first, place.x, r.density.width);
     vec2 around = cos_sin_turns(list_number(r.turn_first, place.y, r.density.height)) * sqrt(sine_square);
-    float across = length(w.xy);
-    vec2 along = across > 0.0 ? w.xy / across : vec2(1, 0);
+    vec2 along = unit_azimuth(w);
     float height = sqrt(max(1.0 - sine_square, 0.0));
     return vec3(along * around.x + vec2(-along.y, along.x) * around.y, passes ? -height : height);
 }

@@ -240,6 +240,9 @@ TEST_CASE("surface pdfs integrate to one, less what is absorbed and what goes in
 
 TEST_CASE("no surface sends out more power than reaches it") {
     for (const Measurement& m : measurements()) {
+        // Tables say what arrives from all directions where a receiver is, and little of what one direction
+        // sends.
+        if (m.at.importance && !m.configuration->is_reciprocal) continue;
         INFO(m.label, ": ", m.albedo.x, " ", m.albedo.y, " ", m.albedo.z);
         const double limit =
             1 +
