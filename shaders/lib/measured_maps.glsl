@@ -32,11 +32,13 @@ struct MeasuredSlices {
 
 uint map_slice(MeasuredMap m, uint index) { return m.first + index * m.height * (m.width + 1u); }
 
-// Where x stands among numbers that rise, points [first, first + count): as far from one to the next. The number of steps
-// is the same for all, since values that leave a loop at different times cannot be relied on (lib/light_selection.glsl).
+// Loops are kept as loops: unrolled, their code takes a minute to compile. Searches make the same number of steps in all
+// lanes, since values that leave a loop at different times cannot be relied on (lib/light_selection.glsl).
+
+// Where x stands among numbers that rise, points [first, first + count): as far from one to the next.
 float list_place(uint first, uint count, float x) {
     uint below = 0u;
-    for (uint step = 512u; step > 0u; step >>= 1)
+    [[dont_unroll]] for (uint step = 512u; step > 0u; step >>= 1)
         if (below + step + 1u < count && measured_point_at(first + below + step).x <= x) below += step;
     float a = measured_point_at(first + below).x, b = measured_point_at(first + min(below + 1u, count - 1u)).x;
     return float(below) + (b > a ? clamp((x - a) / (b - a), 0.0, 1.0) : 0.0);
@@ -46,11 +48,11 @@ float list_number(uint first, float place, uint count) {
     return mix(measured_point_at(first + below).x, measured_point_at(first + below + 1u).x, place - float(below));
 }
 
-// The interval of two points that a place is in, of `count` points.
-uint map_cell(float place, uint count) { return min(uint(max(place, 0.0)), count - 2u); }
+// The cell between points that a place is in.
+uvec2 map_cell(MeasuredMap m, vec2 place) { return min(uvec2(max(place, vec2(0))), uvec2(m.width, m.height) - 2u); }
 
 float map_slice_value(MeasuredMap m, uint index, vec2 place) {
-    uvec2 cell = uvec2(map_cell(place.x, m.width), map_cell(place.y, m.height));
+    uvec2 cell = map_cell(m, place);
     vec2 f = place - vec2(cell);
     uint p = map_slice(m, index) + m.height + cell.y * m.width + cell.x;
     return mix(mix(measured_point_at(p).x, measured_point_at(p + 1u).x, f.x),
@@ -59,26 +61,26 @@ float map_slice_value(MeasuredMap m, uint index, vec2 place) {
 
 float map_value(MeasuredMap m, MeasuredSlices s, vec2 place) {
     float value = 0.0;
-    for (uint k = 0u; k < MEASURED_SLICES; ++k) value += s.weight[k] * map_slice_value(m, s.index[k], place);
+    [[dont_unroll]] for (uint k = 0u; k < MEASURED_SLICES; ++k)
+        value += s.weight[k] * map_slice_value(m, s.index[k], place);
     return value;
 }
 
-// Integral over the rows before this one, and along it.
-vec2 map_row(MeasuredMap m, MeasuredSlices s, uint row) {
+// The point that stands `offset` behind the beginning of a slice, over all of them; `step` points on, `f` of the way there.
+vec2 map_mix(MeasuredMap m, MeasuredSlices s, uint offset, uint step, float f) {
     vec2 sums = vec2(0);
-    for (uint k = 0u; k < MEASURED_SLICES; ++k) sums += s.weight[k] * measured_point_at(map_slice(m, s.index[k]) + row);
-    return sums;
-}
-float map_integral(MeasuredMap m, MeasuredSlices s) { return map_row(m, s, m.height - 1u).x; }
-
-// Value at a column, `f` of the way from one row to the next, and integral up to there.
-vec2 map_column(MeasuredMap m, MeasuredSlices s, uint row, float f, uint column) {
-    vec2 sums = vec2(0);
-    for (uint k = 0u; k < MEASURED_SLICES; ++k) {
-        uint p = map_slice(m, s.index[k]) + m.height + row * m.width + column;
-        sums += s.weight[k] * mix(measured_point_at(p), measured_point_at(p + m.width), f);
+    [[dont_unroll]] for (uint k = 0u; k < MEASURED_SLICES; ++k) {
+        uint p = map_slice(m, s.index[k]) + offset;
+        sums += s.weight[k] * mix(measured_point_at(p), measured_point_at(p + step), f);
     }
     return sums;
+}
+// Integral over the rows before this one, and along it.
+vec2 map_row(MeasuredMap m, MeasuredSlices s, uint row) { return map_mix(m, s, row, 0u, 0.0); }
+float map_integral(MeasuredMap m, MeasuredSlices s) { return map_row(m, s, m.height - 1u).x; }
+// Value at a column, `f` of the way from one row to the next, and integral up to there.
+vec2 map_column(MeasuredMap m, MeasuredSlices s, uint row, float f, uint column) {
+    return map_mix(m, s, m.height + row * m.width + column, m.width, f);
 }
 
 // How much of the way from integral a to b is behind at x.
@@ -86,20 +88,29 @@ float integral_part(float a, float b, float x) { return b > a ? clamp((x - a) / 
 
 // The place that `u`, even on the unit square, is warped to: density value / integral.
 vec2 map_sample(MeasuredMap m, MeasuredSlices s, vec2 u) {
-    float wanted = u.y * map_integral(m, s);
+    // First the row, then the column: each by its integral and the values on both sides of what is found.
     uint row = 0u;
-    for (uint step = 512u; step > 0u; step >>= 1)
-        if (row + step + 1u < m.height && map_row(m, s, row + step).x <= wanted) row += step;
-    vec2 a = map_row(m, s, row), b = map_row(m, s, row + 1u);
-    float y = sample_linear(a.y, b.y, integral_part(a.x, b.x, wanted));
-
-    wanted = u.x * mix(a.y, b.y, y);
-    uint column = 0u;
-    for (uint step = 512u; step > 0u; step >>= 1)
-        if (column + step + 1u < m.width && map_column(m, s, row, y, column + step).y <= wanted) column += step;
-    a = map_column(m, s, row, y, column), b = map_column(m, s, row, y, column + 1u);
-    float x = sample_linear(a.x, b.x, integral_part(a.y, b.y, wanted));
-    return vec2(float(column) + x, float(row) + y);
+    float f = 0.0;
+    vec2 place = vec2(0);
+    [[dont_unroll]] for (uint axis = 0u; axis < 2u; ++axis) {
+        bool rows = axis == 0u;
+        uint count = rows ? m.height : m.width, first = rows ? 0u : m.height + row * m.width, step_on = rows ? 0u : m.width;
+        // Points are (integral before, value) of rows, (value, integral before) of columns.
+        vec2 last = map_mix(m, s, first + count - 1u, step_on, f);
+        float wanted = rows ? u.y * last.x : u.x * last.y;
+        uint at = 0u;
+        [[dont_unroll]] for (uint step = 512u; step > 0u; step >>= 1) {
+            if (at + step + 1u >= count) continue;
+            vec2 p = map_mix(m, s, first + at + step, step_on, f);
+            if ((rows ? p.x : p.y) <= wanted) at += step;
+        }
+        vec2 a = map_mix(m, s, first + at, step_on, f), b = map_mix(m, s, first + at + 1u, step_on, f);
+        if (!rows) a = a.yx, b = b.yx;
+        float part = sample_linear(a.y, b.y, integral_part(a.x, b.x, wanted));
+        if (rows) row = at, f = part, place.y = float(at) + part;
+        else place.x = float(at) + part;
+    }
+    return place;
 }
 
 // Part of the integral of mix(a, b, x) over [0, 1] that lies below x: undoes sample_linear.
@@ -107,7 +118,7 @@ float linear_part(float a, float b, float x) { return a + b > 0.0 ? x * (2.0 * a
 
 // The u that map_sample warps to this place, for slices that integrate to one; and the value there.
 vec2 map_invert(MeasuredMap m, MeasuredSlices s, vec2 place, out float value) {
-    uvec2 cell = uvec2(map_cell(place.x, m.width), map_cell(place.y, m.height));
+    uvec2 cell = map_cell(m, place);
     vec2 f = place - vec2(cell);
     vec2 a = map_row(m, s, cell.y), b = map_row(m, s, cell.y + 1u);
     float along = mix(a.y, b.y, f.y);

@@ -75,8 +75,7 @@ MeasuredSlices measured_slices(MeasuredRef r, float phi, float theta) {
 
 // What stands at a place of the map `density`.
 Spectrum measured_spectrum(MeasuredRef r, MeasuredSlices s, vec2 place) {
-    uvec2 size = uvec2(r.density.width, r.density.height);
-    uvec2 cell = uvec2(map_cell(place.x, size.x), map_cell(place.y, size.y));
+    uvec2 size = uvec2(r.density.width, r.density.height), cell = map_cell(r.density, place);
     vec2 f = place - vec2(cell);
     vec3 rgb = vec3(0);
 #if SPECTRAL
@@ -86,24 +85,25 @@ Spectrum measured_spectrum(MeasuredRef r, MeasuredSlices s, vec2 place) {
     vec4 between = channel - vec4(below);
     Spectrum value = Spectrum(0);
 #endif
-    for (uint k = 0u; k < MEASURED_SLICES; ++k)
-        for (uint corner = 0u; corner < 4u; ++corner) {
-            vec2 side = vec2(corner & 1u, corner >> 1);
-            vec2 part = mix(1.0 - f, f, side);
-            float weight = s.weight[k] * part.x * part.y;
-            uint point = (s.index[k] * size.y + cell.y + (corner >> 1)) * size.x + cell.x + (corner & 1u);
+    [[dont_unroll]] for (uint i = 0u; i < 4u * MEASURED_SLICES; ++i) {
+        uvec2 corner = uvec2(i & 1u, (i >> 1) & 1u);
+        vec2 part = mix(1.0 - f, f, vec2(corner));
+        float weight = s.weight[i >> 2] * part.x * part.y;
+        uint point = (s.index[i >> 2] * size.y + cell.y + corner.y) * size.x + cell.x + corner.x;
 #if SPECTRAL
-            if (r.channels > 0u) {
-                uint first = r.spectra + point * r.channels;
-                for (uint lane = 0u; lane < 4u; ++lane)
-                    value[lane] += weight * mix(measured_spectrum_at(first + below[lane]), measured_spectrum_at(first + above[lane]),
-                                                between[lane]);
-                continue;
-            }
-#endif
-            uint first = r.colors + 3u * point;
-            rgb += weight * vec3(measured_colors[first], measured_colors[first + 1u], measured_colors[first + 2u]);
+        if (r.channels > 0u) {
+            uint first = r.spectra + point * r.channels;
+            uvec4 a = first + below, b = first + above;
+            value += weight * mix(vec4(measured_spectrum_at(a.x), measured_spectrum_at(a.y), measured_spectrum_at(a.z),
+                                       measured_spectrum_at(a.w)),
+                                  vec4(measured_spectrum_at(b.x), measured_spectrum_at(b.y), measured_spectrum_at(b.z),
+                                       measured_spectrum_at(b.w)), between);
+            continue;
         }
+#endif
+        uint first = r.colors + 3u * point;
+        rgb += weight * vec3(measured_colors[first], measured_colors[first + 1u], measured_colors[first + 2u]);
+    }
 #if SPECTRAL
     if (r.channels > 0u) return value;
 #endif
@@ -201,23 +201,35 @@ float measured_index_scale(SurfaceContext c, vec3 wo, vec3 wi) {
     return min(eta * eta, 1.0) / (c.importance ? 1.0 : eta * eta);
 }
 
-Spectrum measured_eval(Measured r, SurfaceContext c, vec3 wo, vec3 wi) {
-    // Towards the receiver lies wo of backward rays, wi of forward ones. f is wanted with the cosine of wi.
-    MeasuredWay way = measured_way(r, c.importance ? wi : wo, c.importance ? wo : wi);
-    if (!(way.factor > 0.0)) return Spectrum(0);
+SurfacePair measured_evaluate(Measured r, SurfaceContext c, vec3 wo, vec3 wi) {
+    SurfacePair pair = no_surface_pair();
+    MeasuredWay seen = no_measured_way();
+    // From wo, then from wi where that is asked for; in a loop so that the code stands once. Values are seen from the
+    // receiver: from wo by backward rays, from wi by forward ones.
+    uint ways = BIDIRECTIONAL != 0 || c.importance ? 2u : 1u;
+    [[dont_unroll]] for (uint i = 0u; i < ways; ++i) {
+        MeasuredWay way = measured_way(r, i == 0u ? wo : wi, i == 0u ? wi : wo);
+        if (i == 0u) pair.pdf = way.pdf;
+        else pair.pdf_reverse = way.pdf;
+        if ((i == 1u) == c.importance) seen = way;
+    }
+    if (!(seen.factor > 0.0)) return pair;
+    // Seen from wi its value has the cosine of wo.
     float cosines = c.importance ? abs(wo.z) > 0.0 ? abs(wi.z) / abs(wo.z) : 0.0 : 1.0;
-    return measured_spectrum(r.file, way.slices, way.place) * (way.factor * cosines * measured_index_scale(c, wo, wi));
+    pair.value = measured_spectrum(r.file, seen.slices, seen.place) * (seen.factor * cosines * measured_index_scale(c, wo, wi));
+    return pair;
 }
-
-float measured_pdf(Measured r, SurfaceContext c, vec3 wo, vec3 wi) { return measured_way(r, wo, wi).pdf; }
 
 vec3 measured_halfway_direction(MeasuredRef r, vec3 w, vec2 u) {
     vec2 fold = measured_fold(r, w);
     w.xy *= fold;
     float phi = folded_azimuth(r, w);
     MeasuredSlices s = measured_slices(r, phi, polar_angle(w));
-    u = map_sample(r.density, s, u) / vec2(r.density.width - 1u, r.density.height - 1u);
-    u = map_sample(r.visible, s, u) / vec2(r.visible.width - 1u, r.visible.height - 1u);
+    MeasuredMap m = r.density;
+    [[dont_unroll]] for (uint i = 0u; i < 2u; ++i) {
+        u = map_sample(m, s, u) / vec2(m.width - 1u, m.height - 1u);
+        m = r.visible;
+    }
     float turn = u.y - 0.5;
     if ((r.kind & MEASURED_ANISOTROPIC) == 0u) turn += phi * (0.5 * INV_PI);
     vec2 polar = cos_sin_turns(0.25 * u.x * u.x);
@@ -242,7 +254,6 @@ vec3 measured_direct_direction(MeasuredRef r, vec3 w, vec3 u) {
 }
 
 BsdfSample measured_sample(Measured r, SurfaceContext c, vec3 wo, vec3 u) {
-    float side = wo.z < 0.0 ? -1.0 : 1.0;
     vec3 w = vec3(wo.xy, abs(wo.z));
     vec3 wi;
     if (measured_has(r, MEASURED_HALFWAY)) {
@@ -252,10 +263,8 @@ BsdfSample measured_sample(Measured r, SurfaceContext c, vec3 wo, vec3 u) {
         wi = measured_direct_direction(r.file, w, u);
     }
     bool passes = wi.z < 0.0;
-    wi.z *= side;
-    float pdf = measured_pdf(r, c, wo, wi);
-    if (!(pdf > 0.0)) return no_bsdf_sample();
-    return BsdfSample(wi, measured_eval(r, c, wo, wi) / pdf, pdf, passes ? EVENT_TRANSMIT : EVENT_REFLECT);
+    if (wo.z < 0.0) wi.z = -wi.z;
+    return scattered(wi, passes ? EVENT_TRANSMIT : EVENT_REFLECT);
 }
 
 Spectrum measured_transparency(Measured r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
