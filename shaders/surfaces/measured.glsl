@@ -60,12 +60,12 @@ float folded_azimuth(MeasuredRef r, vec3 w) {  // at most 0 where the file holds
 
 MeasuredSlices measured_slices(MeasuredRef r, float phi, float theta) {
     float place = list_place(r.theta_first, r.theta_count, theta);
-    uint below = uint(place), above = min(below + 1u, r.theta_count - 1u);
+    uint below = min(uint(place), r.theta_count - 1u), above = min(below + 1u, r.theta_count - 1u);
     float f = place - float(below);
     MeasuredSlices s = MeasuredSlices(uvec4(below, above, 0u, 0u), vec4(1.0 - f, f, 0.0, 0.0));
 #if MEASURED_SLICES == 4
     float turn = list_place(r.phi_first, r.phi_count, phi);
-    uint before = uint(turn), behind = min(before + 1u, r.phi_count - 1u);
+    uint before = min(uint(turn), r.phi_count - 1u), behind = min(before + 1u, r.phi_count - 1u);
     float g = turn - float(before);
     s.index = uvec4(before, before, behind, behind) * r.theta_count + s.index.xyxy;
     s.weight = vec4(s.weight.xy * (1.0 - g), s.weight.xy * g);
