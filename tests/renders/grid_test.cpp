@@ -182,8 +182,9 @@ TEST_CASE("lossless clouds are invisible under a constant environment") {
 
 namespace {
 
-// A cloud of hills and holes in a room, coloured, and beside it a glass of uneven ink that does not scatter.
-void add_clouds(SceneBuilder& s, const TemporaryFolder& folder) {
+// A cloud of hills and holes in a room, coloured, and beside it a glass of uneven ink that does not scatter,
+// or of milk, where vertices merge.
+void add_clouds(SceneBuilder& s, const TemporaryFolder& folder, bool milk = false) {
     hills(0.9, 20).write(folder / "hills.nrrd");
     const auto grid = [&](const glm::dvec3& place, json scattering, json absorption) {
         return json{{"class", "grid"},
@@ -193,7 +194,7 @@ void add_clouds(SceneBuilder& s, const TemporaryFolder& folder) {
                     {"phase", lobe(0.4)}};
     };
     s.medium("cloud", grid({-0.7, -0.3, 0}, {3, 2, 1}, {0.1, 0.3, 0.6}));
-    json ink = grid({1, -0.7, 0.2}, 0, {0.4, 1, 2});
+    json ink = milk ? grid({1, -0.7, 0.2}, {2, 3, 4}, {0.4, 0.2, 0.1}) : grid({1, -0.7, 0.2}, 0, {0.4, 1, 2});
     ink["ior"] = 1.4;
     s.medium("ink", ink);
     s.sphere(0.85, filled(s, boundary, "cloud"), at(-0.7, -0.3, 0));
@@ -209,6 +210,17 @@ TEST_CASE("algorithms agree: a coloured cloud, and uneven ink in glass") {
     add_lamp(s, 1.2);
     add_clouds(s, folder);
     check_against_backward(s, {}, folder / "scene.gltf");
+}
+
+TEST_CASE("algorithms agree: a coloured cloud, and uneven milk in glass" * doctest::test_suite("long")) {
+    TemporaryFolder folder;
+    SceneBuilder s;
+    add_room(s);
+    add_lamp(s, 1.2);
+    add_clouds(s, folder, true);
+    Comparison c;
+    c.backward = 768, c.forward = 128, c.bidirectional = 64, c.seeds = 12;
+    check_against_backward(s, c, folder / "scene.gltf");
 }
 
 TEST_CASE("clouds: by schedule, and with densities beyond the size of a binding, the same film bit for bit") {
