@@ -46,9 +46,10 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
         };
         const uint64_t least = scene.features.scattering ? least_vertices_in_media : least_vertices;
         const uint64_t most = std::max(least, uint64_t(count_) * vertices_a_path);
-        const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex(scene.features.spectral);
-        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least, most)), scene.features.spectral,
-                          make, settings.binding_bytes);
+        const uint64_t bytes = VertexMap::vertex_bytes(scene.features);
+        const uint64_t room = settings.vertex_bytes / (bytes + VertexMap::grid_bytes);
+        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least, most)), bytes, make,
+                          settings.binding_bytes);
         path_ends_ = Buffer(device, uint64_t(count_) * 8, "PathEnds");
     }
     BufferTable table = buffers();

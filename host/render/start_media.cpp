@@ -7,7 +7,7 @@ namespace etendue {
 Buffer find_start_media(Device& device, Scene& scene, uint32_t receiver, float film_aspect, bool of_lights) {
     if (!scene.features.interfaces) return {};
     const uint32_t count = of_lights ? 1 + 2 * uint32_t(scene.lights) : 1;
-    Buffer media(device, uint64_t(count) * 4, "StartMedia");
+    Buffer media(device, uint64_t(count) * (scene.features.body_count > 0 ? 12 : 4), "StartMedia");
     const Kernel kernel =
         make_color_kernel(device, scene, "kernels/find_start_media.comp", {{"StartMedia", &media}},
                           of_lights ? "#define OF_LIGHTS 1\n" : "#define OF_LIGHTS 0\n");

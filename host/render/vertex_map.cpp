@@ -11,9 +11,6 @@ namespace {
 constexpr uint32_t max_capacity = (1u << 28) - 2;
 constexpr uint32_t min_buckets = 16, max_buckets = 1 << 22;
 // Bytes of GridPlace and GridItem (lib/vertex_grid.glsl).
-constexpr uint64_t vertex_bytes(bool spectral) {
-    return spectral ? 68 : 64;
-}  // LightVertex (shaders/lib/light_vertices.glsl)
 constexpr uint64_t place_bytes = 12, item_bytes = 24, entry_bytes = 16;
 constexpr uint32_t run = 64;            // of buckets: RUN in kernels/scan_buckets.comp
 constexpr uint32_t large_bucket = 512;  // LARGE_BUCKET in lib/vertex_grid.glsl
@@ -29,16 +26,20 @@ uint32_t bucket_count(uint32_t capacity) {
 
 }  // namespace
 
-VertexMap::VertexMap(Device& device, uint32_t capacity, bool spectral, const KernelMaker& make,
+uint64_t VertexMap::vertex_bytes(const Features& features) {
+    return 64 + (features.spectral ? 4 : 0) + (features.body_count > 0 ? 4 : 0);
+}
+
+VertexMap::VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, const KernelMaker& make,
                      uint64_t binding_bytes)
     : capacity_(capacity),
       buckets_(bucket_count(capacity)),
-      by_address_(capacity * vertex_bytes(spectral) >
+      by_address_(capacity * vertex_bytes >
                   (binding_bytes ? binding_bytes : device.description.max_buffer_range)),
       cpu_(device.description.type == "CPU") {
     if (capacity == 0 || capacity > max_capacity)
         fail_input("{} light vertices; allowed: 1 to {}", capacity, max_capacity);
-    vertices_ = Buffer(device, capacity * vertex_bytes(spectral), "LightVertices");
+    vertices_ = Buffer(device, capacity * vertex_bytes, "LightVertices");
     address_ = create_buffer(device, std::vector<uint64_t>{vertices_.address()}, "LightVerticesAddress");
     counts_ = create_buffer(device, std::vector<LightVertexCounts>{{capacity, buckets_ - 1, 0, 0}},
                             "LightVertexCounts");

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "host/gpu/kernel.h"
+#include "host/scene/features.h"
 
 namespace etendue {
 
@@ -14,15 +15,12 @@ class VertexMap {
     using KernelMaker = std::function<Kernel(const std::string& file, const BufferTable& buffers,
                                              const std::string& defines)>;
 
-    // With its place in the grid and two buckets at most. `spectral`: it carries four wavelengths, not three
-    // channels.
-    static constexpr uint64_t bytes_a_vertex(bool spectral) {
-        return (spectral ? 68 : 64) + 12 + 24 + 16 + 8;
-    }
+    static uint64_t vertex_bytes(const Features& features);  // of LightVertex (lib/light_vertices.glsl)
+    static constexpr uint64_t grid_bytes = 12 + 24 + 16 + 8;  // a vertex: place, item, entry, two buckets
 
     // Room for `capacity` light vertices, 1 to 2^28 - 2, and a bucket for each, up to 2^22. Vertices of more
     // than `binding_bytes` are read by address; 0 = what the device can bind.
-    VertexMap(Device& device, uint32_t capacity, bool spectral, const KernelMaker& make,
+    VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, const KernelMaker& make,
               uint64_t binding_bytes = 0);
 
     // What kernels need that include lib/light_vertices.glsl or lib/vertex_grid.glsl.

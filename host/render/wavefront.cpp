@@ -27,6 +27,7 @@ uint64_t path_bytes(Wavefront::Direction direction, const Techniques& t, const S
     if (forward) bytes += 8;                                                          // vertices
     if (t.merge && !forward) bytes += spectrum_bytes(scene);                          // bias
     if (scene.features.scattering) bytes += 4;                                        // passage
+    if (scene.features.body_count > 0) bytes += 12;                                   // bodies
     return bytes;
 }
 
@@ -55,7 +56,8 @@ Wavefront::Wavefront(Device& device, Scene& scene, Direction direction, const Te
     const bool forward = direction == Direction::forward;
     shadow_queues_ = scene.features.light_count == 0 ? 0 : techniques.connect && !forward ? 2 : 1;
     const uint64_t n = slots, state_bytes = path_bytes(direction, techniques, scene),
-                   shadow_bytes = 36 + spectrum_bytes(scene) + (scene.features.scattering ? 4 : 0);
+                   shadow_bytes = 36 + spectrum_bytes(scene) + (scene.features.scattering ? 4 : 0) +
+                                  (scene.features.body_count > 0 ? 12 : 0);
     ray_origins_ = Buffer(device, n * ray_bytes, "RayOrigins");
     ray_directions_ = Buffer(device, n * ray_bytes, "RayDirections");
     path_states_ = Buffer(device, n * state_bytes, "PathStates");

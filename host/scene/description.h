@@ -42,6 +42,7 @@ struct MaterialDescription {
     std::string name;
     ObjectDescription surface;
     std::string inside, outside;  // names of media; empty = none named
+    uint32_t priority = 0;        // of the body among those that overlap; 0 = none
     std::optional<EmissionDescription> emission;
     bool double_sided = false;      // emits on both sides (surfaces scatter on both sides in any case)
     nlohmann::json normal_texture;  // glTF normalTextureInfo with `scale`, or null

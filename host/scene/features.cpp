@@ -10,6 +10,7 @@ Features Features::everything() {
     Features f;
     f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.textures = true;
     f.media = f.scattering = f.interfaces = f.straight = f.light_tree = true;
+    f.body_count = most_bodies;
     f.light_count = 16;
     f.infinite_light_count = 2;
     f.scene_radius = 1;
@@ -31,6 +32,8 @@ std::string Features::defines() const {
     define("HAS_MEDIA", media);
     define("HAS_SCATTERING", scattering);
     define("HAS_INTERFACES", interfaces);
+    define("HAS_PRIORITIES", body_count > 0);
+    if (body_count > 0) define("BODY_COUNT", body_count);
     define("HAS_STRAIGHT", straight);
     define("INDEPENDENT_SAMPLES", independent_samples);
     define("SPECTRAL", spectral);

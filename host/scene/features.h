@@ -6,6 +6,8 @@
 
 namespace etendue {
 
+constexpr uint32_t most_bodies = 16;  // materials with a priority: what shaders/lib/bodies.glsl can count
+
 struct Features {
     bool triangles = false;           // the world hierarchy holds triangles
     bool shapes = false;              // … analytic shapes
@@ -17,6 +19,7 @@ struct Features {
     bool media = false;       // some medium absorbs or scatters
     bool scattering = false;  // some medium scatters
     bool interfaces = false;  // some surface separates media: paths keep track of where they are
+    uint32_t body_count = 0;  // materials with a priority: paths count the bodies that they are inside
     bool straight = false;    // some surface lets light pass straight on: shadow rays go through
     bool spectral = false;    // paths carry wavelengths instead of colours
     bool dispersion = false;  // some refractive index depends on the wavelength

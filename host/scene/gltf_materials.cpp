@@ -186,6 +186,14 @@ void read_emission(GltfImport& import, const JsonAt& at, MaterialDescription& ma
     material.emission = emission;
 }
 
+// What is around a body with a priority follows from the others, and its faces may vanish, with what they emit.
+void check_priority(const JsonAt& at, const MaterialDescription& material) {
+    const JsonAt priority = member(*find_extension(at, "ETD_optics"), "priority");
+    if (material.inside.empty()) fail_at(priority, "a material with a priority must name a medium inside");
+    if (!material.outside.empty()) fail_at(priority, "a material with a priority must name none outside");
+    if (material.emission) fail_at(priority, "a material with a priority must not emit");
+}
+
 MaterialDescription read_material(GltfImport& import, size_t i) {
     JsonAt at = document_element(import, "materials", i);
     MaterialDescription material;
@@ -215,6 +223,7 @@ MaterialDescription read_material(GltfImport& import, size_t i) {
         else if (!thick && parameters.contains("transmission"))
             parameters["thin"] = true;
     }
+    if (material.priority > 0) check_priority(at, material);
     return material;
 }
 

@@ -110,11 +110,13 @@ void load_root_optics(GltfImport& import) {
 }
 
 void read_material_optics(GltfImport& import, const JsonAt& optics, MaterialDescription& material) {
-    only_members(optics, {"surface", "inside", "outside", "emission"});
+    only_members(optics, {"surface", "inside", "outside", "priority", "emission"});
     if (std::optional<JsonAt> surface = find_object(optics, "surface"))
         material.surface = object_description(import, *surface, {});
     material.inside = text(optics, "inside");
     material.outside = text(optics, "outside");
+    if (std::optional<JsonAt> priority = find(optics, "priority"))
+        material.priority = uint32_t(integer_value(*priority, 1));
     if (std::optional<JsonAt> emission = find_object(optics, "emission"))
         material.emission = read_emission(*emission);
 }

@@ -14,9 +14,9 @@ struct MaterialRecord {
     SpectrumRef emission, mean_emission;
     uint32_t surface, inside, outside, flags, emission_texture, normal_texture;
     float normal_scale;
-    uint32_t reserved;
+    uint32_t body;
 };
-enum MaterialFlag : uint32_t { emits_both_sides = 1, separates_media = 2, opaque = 4, narrow = 8 };
+enum MaterialFlag : uint32_t { emits_both_sides = 1, separates_media = 2, opaque = 4, narrow = 8, blocks = 16 };
 
 class SceneCompiler {
   public:
@@ -58,6 +58,7 @@ class SceneCompiler {
     void add_materials();
     std::vector<bool> used_materials() const;
     void fill_emission(const EmissionDescription& emission, MaterialRecord& record);
+    void rank_bodies();
     void ask_opacity();
     uint32_t medium_ref(const std::string& name, const std::string& where);
     void add_textures();

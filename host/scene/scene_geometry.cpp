@@ -20,7 +20,8 @@ void SceneCompiler::add_geometry() {
         shapes.push_back(add_record(Interface::geometry, shape.object));
     const auto refs = references(Interface::geometry, shapes);
     world_ = build_world(in_, shape_bounds(refs), refs, threads_, out_.features);
-    const UnrolledTraversal unrolled = unroll_traversal(world_, in_);
+    UnrolledTraversal unrolled;
+    if (out_.features.body_count == 0) unrolled = unroll_traversal(world_, in_);
     out_.features.unrolled_traversal = !unrolled.glsl.empty();
     out_.sources.generated["generated/unrolled_traversal.glsl"] = unrolled.glsl;
     out_.center = world_.center;

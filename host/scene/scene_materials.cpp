@@ -1,4 +1,6 @@
 // Materials: surfaces, media on their sides, emission, textures.
+#include <algorithm>
+
 #include "host/error.h"
 #include "host/scene/emission_texture.h"
 #include "host/scene/scene_compiler.h"
@@ -39,7 +41,7 @@ void SceneCompiler::add_materials() {
             out_.features.normal_maps = true;
         }
         if (m.emission) fill_emission(*m.emission, record);
-        record.surface = no_record;
+        record.surface = record.body = no_record;
         if (used[materials_.size()]) {
             surfaces.push_back(add_record(Interface::surface, m.surface));
             places.push_back(uint32_t(materials_.size()));
@@ -51,6 +53,7 @@ void SceneCompiler::add_materials() {
     const auto refs = references(Interface::surface, surfaces);
     for (size_t i = 0; i < refs.size(); ++i) materials_[places[i]].surface = refs[i];
     out_.materials = materials_.size();
+    rank_bodies();
     ask_opacity();
 }
 
@@ -70,6 +73,29 @@ void SceneCompiler::upload_measured() {
     upload("MeasuredColors", measured_.colors);
 }
 
+// Materials with a priority by their place in the order of priorities; the first of several of the same.
+void SceneCompiler::rank_bodies() {
+    const std::vector<bool> used = used_materials();
+    std::vector<uint32_t> bodies, media;
+    for (uint32_t i = 0; i < in_.materials.size(); ++i)
+        if (used[i] && in_.materials[i].priority > 0) bodies.push_back(i);
+    if (bodies.empty()) return;
+    if (bodies.size() > most_bodies)
+        fail_input("{}: {} materials have a priority; allowed: {}",
+                   message_place(in_, in_.materials[bodies[most_bodies]].surface.where), bodies.size(),
+                   most_bodies);
+    std::stable_sort(bodies.begin(), bodies.end(), [&](uint32_t a, uint32_t b) {
+        return in_.materials[a].priority > in_.materials[b].priority;
+    });
+    for (uint32_t place = 0; place < bodies.size(); ++place) {
+        materials_[bodies[place]].body = place;
+        media.push_back(materials_[bodies[place]].inside);
+    }
+    upload("BodyMedia", media);
+    out_.features.body_count = uint32_t(bodies.size());
+    out_.features.straight = true;  // shadow rays, too, pass faces that are not there
+}
+
 void SceneCompiler::ask_opacity() {
     if (materials_.empty()) return;
     const uint32_t count = uint32_t(materials_.size());
@@ -82,10 +108,11 @@ void SceneCompiler::ask_opacity() {
     run_once("kernels/measure_materials.comp", count, {{"MaterialOpacity", &out}}, {{"count", count}});
     const auto is_opaque = out.read_array<uint32_t>(count);
     for (uint32_t i = 0; i < count; ++i) {
-        if (is_opaque[i])
+        if (is_opaque[i] & 1)
             materials_[i].flags |= opaque;
         else
             out_.features.straight = true;
+        if (is_opaque[i] & 2) materials_[i].flags |= blocks;
     }
 }
 

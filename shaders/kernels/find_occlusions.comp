@@ -28,6 +28,9 @@ ShadowRay shadow_ray_of(ShadowState s) {
     ray.origin = s.origin, ray.direction = s.direction, ray.t_max = s.t_max;
     ray.contribution = s.contribution;
     ray.medium = s.medium;
+#if HAS_PRIORITIES
+    ray.bodies = s.bodies;
+#endif
 #if HAS_SCATTERING
     ray.others = s.others;
 #endif

@@ -10,7 +10,9 @@
 //
 // Assumed: the receiver lies in one medium, and so does each side of a light (of a mesh: of each triangle). The sides differ
 // only where the light's own surface separates media: then it is believed, not the majority. Lights at infinity are in vacuum.
-// Reads: scene. Writes: one word a question. Barrier expected: after the dispatch.
+//
+// Of bodies with priorities (lib/bodies.glsl) those hold the origin that a ray to infinity leaves more often than it enters them.
+// Reads: scene. Writes: one word a question, or counts and a word. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
     uint first, count;
@@ -20,13 +22,19 @@ layout(push_constant) uniform Push {
 
 #include "interfaces/light_source.glsl"
 #include "interfaces/receiver.glsl"
+#include "lib/bodies.glsl"
 #include "lib/materials.glsl"
 #include "lib/primitives.glsl"
+#include "lib/faces.glsl"
 #include "lib/sampler.glsl"
 #include "lib/traversal.glsl"
 
 layout(scalar, set = 0) readonly buffer Lights { uint lights[]; };
+#if HAS_PRIORITIES
+layout(scalar, set = 0) writeonly buffer StartMedia { Bodies start_media[]; };
+#else
 layout(scalar, set = 0) writeonly buffer StartMedia { uint start_media[]; };
+#endif
 
 const uint RAYS = 64u;
 const int SURE = int(RAYS);      // weight of an answer that no opaque surface hides: more than all others together
@@ -43,6 +51,11 @@ struct Witness {
     uint entered[MOST_ENTERED];  // media, and not left again
     uint depth;                  // how many
     int weight;                  // of the answer; 0 = none
+#if HAS_PRIORITIES
+    Bodies since;                // with priorities, entered since the origin
+    Bodies around;               // … that hold the origin
+    bool knows;                  // around.medium
+#endif
 };
 
 // Ray k of a question. False: there is none.
@@ -53,6 +66,10 @@ bool begin_witness(uint question, uint k, bool is_first, out Witness w) {
     w.surfaces = w.depth = 0u;
     w.weight = SURE;
     w.turns = false;
+#if HAS_PRIORITIES
+    w.since = w.around = no_bodies();
+    w.knows = false;
+#endif
     w.light = NO_RECORD - 1u;  // not that of surfaces that are no lights
     if (question == 0u) {
         w.origin = receiver_emit(receiver, u_position, film_aspect).origin;
@@ -80,6 +97,9 @@ bool pass_surface(inout Witness w, SurfacePoint p, out uint medium) {
     if (++w.surfaces >= MOST_SURFACES || (separates && !leaves && w.depth >= MOST_ENTERED)) w.weight = 0;
     medium = leaves ? m.inside : m.outside;
     if (w.weight == 0) return true;
+#if HAS_PRIORITIES
+    if (w.knows || m.body != NO_RECORD) return false;
+#endif
     if (!separates) {
         if ((m.flags & MATERIAL_OPAQUE) != 0u) w.weight = 1;
         return false;
@@ -101,10 +121,31 @@ bool pass_surface(inout Witness w, SurfacePoint p, out uint medium) {
     return false;
 }
 
+#if HAS_PRIORITIES
+// Does the same for bodies with priorities, which need the whole ray: true only where it says nothing.
+bool pass_bodies(inout Witness w, Hit hit, SurfacePoint p) {
+    Crossing c = meet_faces(w.origin, w.direction, w.since, hit, p);
+    for (uint i = 0u; i < uint(BODY_COUNT); ++i)
+        if (body_count(c.before, i) > body_count(w.since, i)) enter_body(w.around, i);
+    w.since = c.after;
+    uint medium;
+    if (pass_surface(w, p, medium)) {
+        w.knows = true;
+        w.around.medium = medium;
+    }
+    return w.weight == 0;
+}
+#endif
+
 void main() {
     uint question = first + gl_GlobalInvocationID.x;
     bool done = question >= count;
-    uint k = 0u, best = NO_RECORD;
+    uint k = 0u;
+#if HAS_PRIORITIES
+    Bodies best = no_bodies();
+#else
+    uint best = NO_RECORD;
+#endif
     int lead = 0;
     bool walks = false;
     Witness w;
@@ -116,16 +157,25 @@ void main() {
         }
         if (walks) {
             Hit hit = find_hit(w.origin, w.direction, INFINITY);
+#if !HAS_PRIORITIES
             uint medium = NO_RECORD;
+#endif
             bool answers = !w.turns;
             if (w.turns) {
                 w.turns = false;
                 w.origin += 0.5 * min(hit.t, SCENE_RADIUS) * w.direction;
                 w.direction = -w.direction;
             } else if (hit.primitive != NO_RECORD) {
+#if HAS_PRIORITIES
+                answers = pass_bodies(w, hit, locate(hit, w.origin, w.direction));
+#else
                 answers = pass_surface(w, locate(hit, w.origin, w.direction), medium);
+#endif
             }
             if (answers) {
+#if HAS_PRIORITIES
+                Bodies medium = w.around;
+#endif
                 lead += medium == best ? w.weight : -w.weight;
                 best = lead < 0 ? medium : best;
                 lead = abs(lead);

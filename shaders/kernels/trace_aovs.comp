@@ -32,9 +32,26 @@ void main() {
     for (uint s = 0u; s < sample_count; ++s) {
         Path path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), s, seed);
         Hit hit = find_hit(path.origin, path.direction, INFINITY);
+#if HAS_PRIORITIES
+        float passed = 0.0;  // m, by faces that are not there
+        SurfacePoint p;
+        Crossing crossing;
+        for (; hit.primitive != NO_RECORD; hit = find_hit(path.origin, path.direction, INFINITY)) {
+            p = locate(hit, path.origin, path.direction);
+            crossing = meet_faces(path.origin, path.direction, path.bodies, hit, p);
+            if (crossing.is_there) break;
+            passed += hit.t;
+            path.origin = offset_origin(p.position, p.error, p.geometric_normal, path.direction);
+            path.bodies = crossing.after;
+        }
+        if (hit.primitive == NO_RECORD) continue;
+        hit.t += passed;
+        ScatteringPoint point = scattering_point(p, path.direction, medium_above(crossing, p, path.direction));
+#else
         if (hit.primitive == NO_RECORD) continue;
         SurfacePoint p = locate(hit, path.origin, path.direction);
         ScatteringPoint point = scattering_point(p, path.direction, path.medium);
+#endif
         BsdfSample b = surface_sample(point.surface, point.context, point.wo, sample_3d(path.random));
         sum.albedo += spectrum_rgb(b.weight);
         sum.normal += point.frame[2];

@@ -35,10 +35,23 @@ ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float di
     shadow.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
     shadow.direction = direction;
     shadow.t_max = distance >= INFINITY ? INFINITY : max(0.0, shadow_t_max(shadow.origin, distance));
+#if HAS_PRIORITIES
+    shadow.bodies = scattering_bodies(s, direction);
+    shadow.medium = medium_among(shadow.bodies);
+#else
     shadow.medium = scattering_medium(s, direction);
+#endif
     weigh(shadow, others);
     return shadow;
 }
+
+#if HAS_PRIORITIES
+// Past faces that are not there.
+void pass_faces(inout Path path, SurfacePoint p, Crossing c) {
+    path.origin = offset_origin(p.position, p.error, p.geometric_normal, path.direction);
+    path.bodies = c.after;
+}
+#endif
 
 // The path goes on along the sampled direction. False: it is absorbed.
 bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEvent event, VertexMis mis) {
@@ -75,7 +88,12 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
 #endif
         path.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
     path.direction = direction;
+#if HAS_PRIORITIES
+    path.bodies = scattering_bodies(s, direction);
+    path.medium = medium_among(path.bodies);
+#else
     path.medium = scattering_medium(s, direction);
+#endif
     return true;
 }
 

@@ -3,7 +3,7 @@
 
 #include "lib/spectrum.glsl"
 
-struct LightVertex {  // 64 bytes; 68 with wavelengths, of which there are four
+struct LightVertex {  // 64 bytes; 4 more with wavelengths, of which there are four, and 4 with bodies that have priorities
     vec3 position;    // m
     float vcm;        // dVCM of Georgiev 2012, "Implementing Vertex Connection and Merging"
     Spectrum throughput;  // relative flux
@@ -14,6 +14,9 @@ struct LightVertex {  // 64 bytes; 68 with wavelengths, of which there are four
     vec2 uv;
     uint primitive;   // NO_RECORD within a medium
     uint previous;    // light_vertex_link
+#if HAS_PRIORITIES
+    uint medium_above;  // on the side of the normal
+#endif
 };
 
 const uint NO_LIGHT_VERTEX = 0x0FFFFFFFu;

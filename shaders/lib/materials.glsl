@@ -13,13 +13,14 @@ struct Material {
     TextureRef emission_texture;
     TextureRef normal_texture;    // tangent space, in [0, 1]
     float normal_scale;
-    uint reserved;
+    uint body;                    // place among the materials with a priority (lib/bodies.glsl); NO_RECORD = none
 };
 
 const uint MATERIAL_EMITS_BOTH_SIDES = 1u;
 const uint MATERIAL_SEPARATES_MEDIA = 2u;  // inside and outside hold; without it a ray that passes stays where it is
 const uint MATERIAL_OPAQUE = 4u;           // nothing passes straight on
 const uint MATERIAL_NARROW = 8u;           // scatters into narrow lobes: perfectly smooth or nearly so, in part at least
+const uint MATERIAL_BLOCKS = 16u;          // nothing passes at all; known only where bodies have priorities
 
 layout(scalar, set = 0) readonly buffer Materials { Material materials[]; };
 

@@ -6,6 +6,7 @@
 //   CONNECT_VERTICES  … also by connecting vertices of backward paths with vertices of forward paths
 //   MERGE_VERTICES    … also by merging them
 //   FORWARD_ONLY      what forward rays can bring is brought by nothing else
+#include "lib/bodies.glsl"
 #include "lib/records.glsl"
 #include "lib/sampler.glsl"
 #include "lib/spectrum.glsl"
@@ -24,6 +25,9 @@ struct Path {
     vec3 reference;       // point where the direction was chosen
     float pdf;            // of choosing the direction there, 1/sr; 0 = one of finitely many (delta, camera)
     uint medium;          // RecordRef of the medium the ray is in
+#if HAS_PRIORITIES
+    Bodies bodies;        // that the ray is inside
+#endif
 #if HAS_SCATTERING
     float passage;        // of scattering media since the reference (interfaces/medium_optics.glsl)
 #endif
@@ -70,6 +74,9 @@ struct ShadowRay {
     float t_max;            // 0 = no ray
     Spectrum contribution;
     uint medium;
+#if HAS_PRIORITIES
+    Bodies bodies;
+#endif
 #if HAS_SCATTERING
     float others;           // of weigh(): the passage is known once the ray is traced
 #endif
@@ -81,6 +88,9 @@ struct ShadowRay {
 ShadowRay no_shadow_ray() {
     ShadowRay ray;
     ray.origin = vec3(0), ray.direction = vec3(0, 0, 1), ray.t_max = 0.0, ray.contribution = Spectrum(0), ray.medium = NO_RECORD;
+#if HAS_PRIORITIES
+    ray.bodies = no_bodies();
+#endif
 #if HAS_SCATTERING
     ray.others = 0.0;
 #endif

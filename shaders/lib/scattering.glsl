@@ -7,6 +7,7 @@
 #include "lib/frames.glsl"
 #include "lib/materials.glsl"
 #include "lib/primitives.glsl"
+#include "lib/faces.glsl"
 
 struct ScatteringPoint {
     mat3 frame;           // columns: tangent, bitangent, normal to scatter about, in world space; within a medium the last is the
@@ -18,6 +19,10 @@ struct ScatteringPoint {
     uint material;
     uint medium_above;    // media on the side of the normal and below it
     uint medium_below;
+#if HAS_PRIORITIES
+    Bodies bodies_above;
+    Bodies bodies_below;
+#endif
     SurfaceContext context;
 #if HAS_DISPERSION
     bool disperses;       // wavelengths part here
@@ -63,7 +68,7 @@ bool is_consistent(ScatteringPoint s, vec3 direction) {
 // … and the frame that s now has, in which the direction is `local`?
 bool is_on_one_side(ScatteringPoint s, vec3 direction, vec3 local) { return in_volume(s) || local.z * dot(direction, s.normal) > 0.0; }
 
-// `direction` is that of the ray that hit p, `medium` the one it came through. The frame is that of the shading normal.
+// `direction` is that of the ray that hit p, `medium` the one it came through; of a body with a priority the one around it. The frame is that of the shading normal.
 ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool importance) {
     Material m = materials[p.material];
     ScatteringPoint s;
@@ -74,7 +79,11 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool i
     s.shading_normal = s.frame[2];
     s.wo = -direction * s.frame;
     bool separates = (m.flags & MATERIAL_SEPARATES_MEDIA) != 0u;
+#if HAS_PRIORITIES
+    s.medium_above = separates && m.body == NO_RECORD ? m.outside : medium;
+#else
     s.medium_above = separates ? m.outside : medium;
+#endif
     s.medium_below = separates ? m.inside : medium;
     s.context = SurfaceContext(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
 #if HAS_SCATTERING
@@ -137,6 +146,19 @@ float adjoint_correction(ScatteringPoint s, vec3 light_direction, vec3 direction
 uint scattering_medium(ScatteringPoint s, vec3 direction) {
     return dot(direction, s.normal) > 0.0 ? s.medium_above : s.medium_below;
 }
+
+#if HAS_PRIORITIES
+void set_bodies(inout ScatteringPoint s, Crossing c, vec3 direction) {
+    bool leaves = dot(direction, s.normal) > 0.0;
+    s.bodies_above = leaves ? c.after : c.before;
+    s.bodies_below = leaves ? c.before : c.after;
+}
+
+// Those that a ray is inside after it leaves in a world direction.
+Bodies scattering_bodies(ScatteringPoint s, vec3 direction) {
+    return dot(direction, s.normal) > 0.0 ? s.bodies_above : s.bodies_below;
+}
+#endif
 
 // What of the rays along a direction meets the point, per area or volume: the cosine, or the extinction coefficient.
 float catch_density(ScatteringPoint s, vec3 direction) {

@@ -22,6 +22,18 @@ struct Hit {
     uint instance;   // entry of `primitives` of the instance that holds it; NO_RECORD = none
 };
 
+#if HAS_PRIORITIES
+// The order of a ray's hits: by distance, and by what is hit where distances are the same to the last bit.
+bool comes_after(Hit a, Hit b) {
+    if (a.t != b.t) return a.t > b.t;
+    return a.instance > b.instance || (a.instance == b.instance && a.primitive > b.primitive);
+}
+// The end of a ray that has met `hit`: hits of the same distance are still of interest.
+#define HIT_LIMIT(hit) (hit.primitive == NO_RECORD ? hit.t : uintBitsToFloat(floatBitsToUint(hit.t) + 1u))
+#else
+#define HIT_LIMIT(hit) hit.t
+#endif
+
 // Scenes of few primitives come as straight code (host/scene/unrolled_traversal.h).
 #if HAS_UNROLLED_TRAVERSAL
 #include "generated/unrolled_traversal.glsl"
@@ -39,6 +51,10 @@ struct Traversal {
     vec3 world_origin, world_direction;
     uint instance;
 #endif
+#if HAS_PRIORITIES
+    Hit after;     // only hits after this one count
+    float skipped; // its distance as boxes see it, at most
+#endif
 };
 
 uint traversal_stack[BVH_STACK_SIZE];
@@ -50,11 +66,17 @@ void traversal_enter(inout Traversal w, uint header, vec3 origin, vec3 direction
     w.direction = direction;
     w.box = box_ray(header, origin, direction);
     w.limit = w.hit.t - w.box.start;
+#if HAS_PRIORITIES
+    w.skipped = w.after.t * (1.0 - 4.0 * EPSILON) - w.box.start;
+#endif
     w.shear = ray_shear(direction);
 }
 
 void traversal_begin(out Traversal w, vec3 origin, vec3 direction, float t_max) {
     w.hit = Hit(t_max, vec2(0), NO_RECORD, NO_RECORD);
+#if HAS_PRIORITIES
+    w.after = Hit(0.0, vec2(0), NO_RECORD, NO_RECORD);
+#endif
     traversal_enter(w, WORLD_HEADER, origin, direction);
     w.node = node_at(WORLD_HEADER).w;
     traversal_stack[0] = BVH_NOTHING;
@@ -72,6 +94,9 @@ void traversal_step(inout Traversal w, const bool any_hit) {
         uvec2 child;
         meet_boxes(w.box, w.node, w.limit, near, far, child);
         bool first = near.x <= far.x, second = near.y <= far.y;
+#if HAS_PRIORITIES
+        first = first && far.x >= w.skipped, second = second && far.y >= w.skipped;
+#endif
         bool both = first && second;
         bool second_nearer = second && (!first || near.y < near.x);
         uint popped = traversal_stack[w.height - 1u];
@@ -92,15 +117,22 @@ void traversal_step(inout Traversal w, const bool any_hit) {
 #if HAS_SHAPES || HAS_INSTANCES
         if (attributes_kind(primitive.attributes) == KIND_TRIANGLE)
 #endif
-            met = triangle_meet(w.shear, w.origin, w.direction, primitive.v0, primitive.v1, primitive.v2, w.hit.t,
+            met = triangle_meet(w.shear, w.origin, w.direction, primitive.v0, primitive.v1, primitive.v2, HIT_LIMIT(w.hit),
                                 found);
 #endif
 #if HAS_SHAPES
         if (attributes_kind(primitive.attributes) == KIND_SHAPE) {
             mat4x3 m = transform_at(floatBitsToUint(primitive.v0.y)).local_from_world;
             met = geometry_intersect(floatBitsToUint(primitive.v0.x), m * vec4(w.origin, 1.0),
-                                     m * vec4(w.direction, 0.0), w.hit.t, found);
+                                     m * vec4(w.direction, 0.0), HIT_LIMIT(w.hit), found);
         }
+#endif
+#if HAS_PRIORITIES
+        Hit candidate = Hit(found.t, found.uv, index, NO_RECORD);
+#if HAS_INSTANCES
+        candidate.instance = w.instance;
+#endif
+        met = met && comes_after(candidate, w.after) && comes_after(w.hit, candidate);
 #endif
         if (met) {
             w.hit.t = found.t;
@@ -142,6 +174,18 @@ Hit find_hit(vec3 origin, vec3 direction, float t_max) {
     while (w.node != BVH_NOTHING) traversal_step(w, false);
     return w.hit;
 }
+
+#if HAS_PRIORITIES
+// The first hit after another one, which may have the same distance.
+Hit find_hit_after(vec3 origin, vec3 direction, float t_max, Hit after) {
+    Traversal w;
+    traversal_begin(w, origin, direction, t_max);
+    w.after = after;
+    w.skipped = after.t * (1.0 - 4.0 * EPSILON) - w.box.start;
+    while (w.node != BVH_NOTHING) traversal_step(w, false);
+    return w.hit;
+}
+#endif
 
 // Whether anything is hit with 0 < t < t_max.
 bool find_occlusion(vec3 origin, vec3 direction, float t_max) {

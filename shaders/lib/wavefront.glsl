@@ -19,6 +19,9 @@ struct PathState {
     vec3 reference;
     uint medium;
     uint dimension;  // of the sampler
+#if HAS_PRIORITIES
+    Bodies bodies;
+#endif
 #if HAS_SCATTERING
     float passage;
 #endif
@@ -50,6 +53,9 @@ struct ShadowState {
     uint target;  // what it contributes to: a slot; forward: a pixel
     Spectrum contribution;
     uint medium;
+#if HAS_PRIORITIES
+    Bodies bodies;
+#endif
 #if HAS_SCATTERING
     float others;
 #endif
@@ -97,6 +103,9 @@ void store_path(uint slot, Path path) {
     s.reference = path.reference;
     s.medium = path.medium;
     s.dimension = path.random.dimension;
+#if HAS_PRIORITIES
+    s.bodies = path.bodies;
+#endif
 #if HAS_SCATTERING
     s.passage = path.passage;
 #endif
@@ -135,6 +144,9 @@ Path load_path(Batch batch, uint slot) {
     path.depth = s.depth;
     path.reference = s.reference;
     path.medium = s.medium;
+#if HAS_PRIORITIES
+    path.bodies = s.bodies;
+#endif
 #if HAS_SCATTERING
     path.passage = s.passage;
 #endif
@@ -177,6 +189,9 @@ void append_shadow_ray(ShadowRay shadow, uint target, uint first, uint counter) 
     if (casts)
         shadow_rays[first + place] =
             ShadowState(shadow.origin, shadow.t_max, shadow.direction, target, shadow.contribution, shadow.medium
+#if HAS_PRIORITIES
+                        , shadow.bodies
+#endif
 #if HAS_SCATTERING
                         , shadow.others
 #endif

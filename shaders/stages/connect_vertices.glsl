@@ -33,7 +33,11 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     {
         SurfacePoint q = locate(Hit(0.0, y.uv, y.primitive, y.instance), y.position, -light_direction);
         // A shadow ray goes straight: only boundaries lie on it, index-matched by definition, so the index here holds there.
-        there = shaded_point(q, -light_direction, scattering_medium(s, direction), true);
+        uint medium = scattering_medium(s, direction);
+#if HAS_PRIORITIES
+        if (materials[q.material].body != NO_RECORD) medium = y.medium_above;
+#endif
+        there = shaded_point(q, -light_direction, medium, true);
     }
     if (!is_consistent(there, -direction)) flatten(there, -light_direction);
     float frame = frame_probability(there, light_direction, -direction);

@@ -18,6 +18,9 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.reference = ray.origin;
     path.pdf = 0.0;
     path.medium = receiver_start_medium();
+#if HAS_PRIORITIES
+    path.bodies = receiver_start_bodies();
+#endif
     path.depth = 0u;
 #if HAS_SCATTERING
     path.passage = 1.0;

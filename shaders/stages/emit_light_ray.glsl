@@ -22,6 +22,9 @@ Path emit_light_ray(uint index) {
     path.reference = ray.origin;
     path.pdf = 0.0;
     path.medium = light_start_medium(light, ray.front);
+#if HAS_PRIORITIES
+    path.bodies = light_start_bodies(light, ray.front);
+#endif
     path.depth = 0u;
 #if HAS_SCATTERING
     path.passage = 1.0;

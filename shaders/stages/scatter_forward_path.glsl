@@ -38,6 +38,9 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
     }
     SurfacePoint p;
     ScatteringPoint s;
+#if HAS_PRIORITIES
+    Crossing crossing = Crossing(path.bodies, path.bodies, true);
+#endif
 #if HAS_SCATTERING
     if (scatters) {
         p = volume_point(path.origin + hit.t * path.direction, path.direction);
@@ -46,8 +49,21 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
 #endif
     {
         p = locate(hit, path.origin, path.direction);
+#if HAS_PRIORITIES
+        crossing = meet_faces(path.origin, path.direction, path.bodies, hit, p);
+        if (!crossing.is_there) {
+            pass_faces(path, p, crossing);
+            counters.absorbed += carried - luminance(path.throughput);
+            return true;
+        }
+        s = shaded_point(p, path.direction, medium_above(crossing, p, path.direction), true);
+#else
         s = shaded_point(p, path.direction, path.medium, true);
+#endif
     }
+#if HAS_PRIORITIES
+    set_bodies(s, crossing, path.direction);
+#endif
     float flat_part = flat_probability(s, -path.direction);
     if (flat_part > 0.0 && (flat_part >= 1.0 || sample_1d(path.random) < flat_part)) flatten(s, path.direction);
 #if HAS_DISPERSION

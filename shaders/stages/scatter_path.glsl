@@ -97,6 +97,9 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     // collect_emission: of the primitive that is hit, or of all that surrounds the scene
     bool escapes = !scatters && hit.primitive == NO_RECORD;
     SurfacePoint p;
+#if HAS_PRIORITIES
+    Crossing crossing = Crossing(path.bodies, path.bodies, true);
+#endif
     LightHit light_hit = LightHit(vec3(0), vec3(0), vec2(0), vec2(0));
     uint light = 0u, light_end = uint(INFINITE_LIGHT_COUNT);
     if (scatters) {
@@ -106,6 +109,13 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
 #endif
     } else if (!escapes) {
         p = locate(hit, path.origin, path.direction);
+#if HAS_PRIORITIES
+        crossing = meet_faces(path.origin, path.direction, path.bodies, hit, p);
+        if (!crossing.is_there) {
+            pass_faces(path, p, crossing);
+            return true;
+        }
+#endif
         light = p.light;
         light_end = p.light + 1u;  // 0 where it is no light
         light_hit = LightHit(p.position, p.geometric_normal, p.uv0, p.uv1);
@@ -122,7 +132,12 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     if (scatters) s = volume_scattering_point(p.position, path.direction, path.medium, false);
     else
 #endif
+#if HAS_PRIORITIES
+        s = scattering_point(p, path.direction, medium_above(crossing, p, path.direction));
+    set_bodies(s, crossing, path.direction);
+#else
         s = scattering_point(p, path.direction, path.medium);
+#endif
 #if HAS_DISPERSION
     if (s.disperses) make_monochrome(path);
 #endif

@@ -17,6 +17,9 @@ void store_vertex(inout Path path, uint path_index, SurfacePoint p, ScatteringPo
     v.instance = hit.instance;
     v.uv = hit.uv;
     v.primitive = in_volume(s) ? NO_RECORD : hit.primitive;
+#if HAS_PRIORITIES
+    v.medium_above = s.medium_above;
+#endif
     uint starts = (path.flags & PATH_STARTS) != 0u ? VERTEX_STARTS : 0u;
     uint monochrome = (path.flags & PATH_MONOCHROME) != 0u ? VERTEX_MONOCHROME : 0u;
     v.previous = light_vertex_link(path.vertices.x, starts | monochrome | (merges ? LIGHT_VERTEX_MERGES : 0u));

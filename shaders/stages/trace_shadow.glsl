@@ -47,15 +47,31 @@ Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
         pass_medium(shadow, met ? hit.t : t_left);
         if (!met) return weighed(shadow);
         SurfacePoint p = locate(hit, shadow.origin, shadow.direction);
+#if HAS_PRIORITIES
+        Crossing crossing = meet_faces(shadow.origin, shadow.direction, shadow.bodies, hit, p);
+        if (crossing.is_there) {
+            if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
+            ScatteringPoint s = scattering_point(p, shadow.direction, medium_above(crossing, p, shadow.direction));
+            shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
+            if (is_black(shadow.contribution)) return Spectrum(0);
+        }
+        shadow.bodies = crossing.after;
+        uint medium = medium_among(crossing.after);
+#else
         if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
         ScatteringPoint s = scattering_point(p, shadow.direction, shadow.medium);
         shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
         if (is_black(shadow.contribution)) return Spectrum(0);
+#endif
         vec3 origin = origin_behind(shadow.origin, p.position, p.error, p.geometric_normal, shadow.direction);
         t_left = t_left < INFINITY ? t_left - dot(origin - shadow.origin, shadow.direction) : INFINITY;
         if (!(t_left > 0.0)) return weighed(shadow);
         shadow.origin = origin;
+#if HAS_PRIORITIES
+        shadow.medium = medium;
+#else
         shadow.medium = scattering_medium(s, shadow.direction);
+#endif
     }
 #endif
 }

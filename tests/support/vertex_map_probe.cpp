@@ -93,7 +93,7 @@ const char* const merge_text = R"(
 
 VertexMapProbe::VertexMapProbe(Device& device, uint32_t capacity, uint64_t binding_bytes)
     : map(
-          device, capacity, false,
+          device, capacity, VertexMap::vertex_bytes({}),
           [&](const std::string& file, const BufferTable& buffers, const std::string& defines) {
               CompileOptions options;
               options.defines = defines;
