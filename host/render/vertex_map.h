@@ -15,7 +15,7 @@ class VertexMap {
     using KernelMaker = std::function<Kernel(const std::string& file, const BufferTable& buffers,
                                              const std::string& defines)>;
 
-    static uint64_t vertex_bytes(const Features& features);  // of LightVertex (lib/light_vertices.glsl)
+    static uint64_t vertex_bytes(const Features& features);   // of LightVertex (lib/light_vertices.glsl)
     static constexpr uint64_t grid_bytes = 12 + 24 + 16 + 8;  // a vertex: place, item, entry, two buckets
 
     // Room for `capacity` light vertices, 1 to 2^28 - 2, and a bucket for each, up to 2^22. Vertices of more

@@ -186,7 +186,8 @@ void read_emission(GltfImport& import, const JsonAt& at, MaterialDescription& ma
     material.emission = emission;
 }
 
-// What is around a body with a priority follows from the others, and its faces may vanish, with what they emit.
+// What is around a body with a priority follows from the others, and its faces may vanish, with what they
+// emit.
 void check_priority(const JsonAt& at, const MaterialDescription& material) {
     const JsonAt priority = member(*find_extension(at, "ETD_optics"), "priority");
     if (material.inside.empty()) fail_at(priority, "a material with a priority must name a medium inside");

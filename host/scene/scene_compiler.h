@@ -16,7 +16,13 @@ struct MaterialRecord {
     float normal_scale;
     uint32_t body;
 };
-enum MaterialFlag : uint32_t { emits_both_sides = 1, separates_media = 2, opaque = 4, narrow = 8, blocks = 16 };
+enum MaterialFlag : uint32_t {
+    emits_both_sides = 1,
+    separates_media = 2,
+    opaque = 4,
+    narrow = 8,
+    blocks = 16
+};
 
 class SceneCompiler {
   public:

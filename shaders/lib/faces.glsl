@@ -58,8 +58,9 @@ Crossing meet_faces(vec3 origin, vec3 direction, Bodies bodies, inout Hit hit, i
         if ((materials[p.material].flags & MATERIAL_SEPARATES_MEDIA) != 0u) add_face(f, p, direction);
         return f.crossing;
     }
-    // A little more than two faces can differ by that are the same but for rounding.
-    float slack = 2.5 * dot(abs(p.geometric_normal), p.error) / max(abs(dot(direction, p.geometric_normal)), 1e-6);
+    // More than the distances of two hits on one plane can differ by.
+    vec3 n = abs(p.geometric_normal), reach = 16.0 * EPSILON * (abs(origin) + abs(p.position));
+    float slack = dot(n, 4.0 * p.error + reach) / max(abs(dot(direction, p.geometric_normal)), 1e-6);
     float end = hit.t + slack;
     Hit seen = hit, last = Hit(hit.t - slack, vec2(0), NO_RECORD, NO_RECORD);
     SurfacePoint q = p;
@@ -68,7 +69,8 @@ Crossing meet_faces(vec3 origin, vec3 direction, Bodies bodies, inout Hit hit, i
         if (next.primitive == NO_RECORD) break;
         last = next;
         SurfacePoint found = locate(next, origin, direction);
-        if (bounds_body(found) && add_face(f, found, direction)) {
+        bool coincides = abs(dot(found.position - p.position, p.geometric_normal)) <= 1.5 * dot(n, found.error + p.error);
+        if (coincides && bounds_body(found) && add_face(f, found, direction)) {
             q = found;
             seen = next;
         }

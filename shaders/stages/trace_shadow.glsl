@@ -56,7 +56,6 @@ Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
             if (is_black(shadow.contribution)) return Spectrum(0);
         }
         shadow.bodies = crossing.after;
-        uint medium = medium_among(crossing.after);
 #else
         if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
         ScatteringPoint s = scattering_point(p, shadow.direction, shadow.medium);
@@ -68,7 +67,7 @@ Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
         if (!(t_left > 0.0)) return weighed(shadow);
         shadow.origin = origin;
 #if HAS_PRIORITIES
-        shadow.medium = medium;
+        shadow.medium = medium_among(shadow.bodies);
 #else
         shadow.medium = scattering_medium(s, shadow.direction);
 #endif

@@ -172,6 +172,30 @@ const Fault faults[] = {
      [](json& d) {
          d["materials"][0]["emissiveFactor"] = json::array({1, 1});
      }},
+    {"/materials/0/extensions/ETD_optics/priority: is 0; must be an integer from 1",
+     [](json& d) {
+         d["materials"][0]["extensions"]["ETD_optics"] = {{"priority", 0}};
+     }},
+    {"/materials/0/extensions/ETD_optics/priority: is 1.5",
+     [](json& d) {
+         d["materials"][0]["extensions"]["ETD_optics"] = {{"priority", 1.5}};
+     }},
+    {"/materials/0/extensions/ETD_optics/priority: a material with a priority must name a medium inside",
+     [](json& d) {
+         d["materials"][0]["extensions"]["ETD_optics"] = {{"priority", 1}};
+     }},
+    {"/materials/0/extensions/ETD_optics/priority: a material with a priority must name none outside",
+     [](json& d) {
+         d["extensions"]["ETD_optics"]["media"] = json::array({{{"name", "ice"}, {"class", "homogeneous"}}});
+         d["materials"][0]["extensions"]["ETD_optics"] = {
+             {"priority", 1}, {"inside", "ice"}, {"outside", "ice"}};
+     }},
+    {"/materials/0/extensions/ETD_optics/priority: a material with a priority must not emit",
+     [](json& d) {
+         d["extensions"]["ETD_optics"]["media"] = json::array({{{"name", "ice"}, {"class", "homogeneous"}}});
+         d["materials"][0]["extensions"]["ETD_optics"] = {
+             {"priority", 1}, {"inside", "ice"}, {"emission", {{"radiance", 1}}}};
+     }},
     {"/materials/0/extensions/KHR_materials_ior/ior: is 0.5; must be 0, or at least 1",
      [](json& d) { d["materials"][0]["extensions"]["KHR_materials_ior"]["ior"] = 0.5; }},
     {"/materials/0/extensions/KHR_materials_dispersion/dispersion: is -1; must be from 0",
@@ -196,7 +220,7 @@ const Fault faults[] = {
     {"/materials/1/extensions/ETD_optics/surface/class: is a number; must be a string",
      [](json& d) { d["materials"][1]["extensions"]["ETD_optics"]["surface"]["class"] = 3; }},
     {"/materials/1/extensions/ETD_optics/surfaces: is not known; allowed are surface, inside, outside, "
-     "emission",
+     "priority, emission",
      [](json& d) { d["materials"][1]["extensions"]["ETD_optics"]["surfaces"] = 3; }},
     {"/materials/1/extensions/ETD_optics/emission: names 2 quantities",
      [](json& d) { d["materials"][1]["extensions"]["ETD_optics"]["emission"]["power"] = 3; }},

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/error.h"
 #include "host/render/start_media.h"
 #include "tests/support/render_probe.h"
 
@@ -46,7 +47,7 @@ std::vector<Column> columns() {
             {"not closed below", {{0.5, 1, 1, 3}}, 0.5 * 3, 0, 1, 0}};
 }
 
-// Column i at x = i, half a metre wide; everything is met by vertical rays.
+// Column i at x = i, a metre wide; everything is met by vertical rays.
 void add_columns(SceneBuilder& s) {
     std::vector<std::pair<std::pair<double, int>, int>> known;
     int number = 0;
@@ -66,9 +67,9 @@ void add_columns(SceneBuilder& s) {
             const Slab& slab = all[i].slabs[k];
             const int m = material(slab.sigma, slab.priority);
             for (int n = 0; n < (k ? 1 : all[i].repeat_lo); ++n)
-                s.rectangle(0.9, 0.9, m, facing_down(double(i), 0, slab.lo + n * 1e-4));
+                s.rectangle(1, 2, m, facing_down(double(i), 0, slab.lo + n * 1e-4));
             for (int n = 0; n < (k ? 1 : all[i].repeat_hi); ++n)
-                s.rectangle(0.9, 0.9, m, at(double(i), 0, slab.hi - n * 1e-4));
+                s.rectangle(1, 2, m, at(double(i), 0, slab.hi - n * 1e-4));
         }
 }
 
@@ -82,8 +83,9 @@ void check_columns(const Estimates& e, double unattenuated, bool from_below) {
             const double red = other ? all[i].depth_from_below : all[i].depth;
             const double depth = channel == 0 ? red : channel == 1 ? red / 3 : 0;
             // The faces that are there twenty times lie 2 mm apart.
-            CHECK(e.at(uint32_t(i), 0, channel) ==
-                  doctest::Approx(unattenuated * std::exp(-depth)).epsilon(all[i].repeat_lo > 1 ? 4e-3 : 2e-5));
+            CHECK(
+                e.at(uint32_t(i), 0, channel) ==
+                doctest::Approx(unattenuated * std::exp(-depth)).epsilon(all[i].repeat_lo > 1 ? 4e-3 : 2e-5));
         }
 }
 
@@ -126,12 +128,14 @@ TEST_CASE("paths start among the bodies that hold their start, whose faces may c
         return s.material({{"surface", {{"class", "boundary"}}}, {"inside", inside}, {"priority", priority}});
     };
     const int water = body("water", 1), ice = body("ice", 2), glass = body("glass", 3);  // places 2, 1, 0
-    // A cube of glass around one of water that fits it to the last bit, two balls of ice in it, in a cloud of fog.
+    // A cube of glass around one of water that fits it to the last bit, two balls of ice in it, in a cloud of
+    // fog.
     add_box(s, {4, 4, 4}, glass, false, at(0, 0, 0));
     add_box(s, {2, 2, 2}, glass, true, at(0, 0, 0));
     add_box(s, {2, 2, 2}, water, false, at(0, 0, 0));
     s.sphere(0.6, ice, at(-0.2, 0, 0)), s.sphere(0.6, ice, at(0.2, 0, 0));
-    add_box(s, {9, 9, 9}, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}}), false, at(0, 0, 0));
+    add_box(s, {9, 9, 9}, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}}), false,
+            at(0, 0, 0));
     add_box(s, {20, 20, 20}, s.lambertian(0.5), true, at(0, 0, 0));
     struct Expected {
         uint32_t counts;

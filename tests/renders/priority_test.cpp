@@ -1,4 +1,5 @@
-// Bodies whose meshes overlap, by priority, against the same bodies cut to shape by hand, with interfaces that name their media.
+// Bodies whose meshes overlap, by priority, against the same bodies cut to shape by hand, with interfaces
+// that name their media.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -152,9 +153,11 @@ TEST_CASE("overlapping bodies look as those cut to shape: seen and lit from with
         s.medium("air", {{"ior", 1.0}, {"absorption", 0.5}});
         add_box(s, {4, 4, 4}, s.lambertian({0.7, 0.5, 0.3}), true, at(0, 0, 0));
         s.perspective(1.4, towards_x);
-        s.light({{"type", "point"}, {"intensity", 1}}, at(-0.1, 0.1, 0.2));      // in glass, and within the ice's mesh
-        s.light({{"type", "point"}, {"intensity", 0.5}}, at(0.8, -0.1, 0.1));    // in ice
-        s.rectangle(0.2, 0.2, s.black_emitter(10), {{-0.4, -0.3, 0}, {-0.70710678118654752, 0, 0, 0.70710678118654752}});
+        s.light({{"type", "point"}, {"intensity", 1}},
+                at(-0.1, 0.1, 0.2));  // in glass, and within the ice's mesh
+        s.light({{"type", "point"}, {"intensity", 0.5}}, at(0.8, -0.1, 0.1));  // in ice
+        s.rectangle(0.2, 0.2, s.black_emitter(10),
+                    {{-0.4, -0.3, 0}, {-0.70710678118654752, 0, 0, 0.70710678118654752}});
         const Blocks blocks{{{"class", "dielectric"}, {"alpha", 0.3}}};
         cut ? add_cut(s, blocks) : add_overlapping(s, blocks);
     });
@@ -176,8 +179,9 @@ TEST_CASE("overlapping bodies look as those cut to shape: flint in crown glass, 
 
 namespace {
 
-// A tumbler of smooth glass, seen from its side, with water up to the cavity's walls: `overlap` metres into them, and
-// `first` says which mesh stands first. Boxes are stretched by their nodes, so that faces that coincide differ by rounding.
+// A tumbler of smooth glass, seen from its side, with water up to the cavity's walls: `overlap` metres into
+// them, and `first` says which mesh stands first. Boxes are stretched by their nodes, so that faces that
+// coincide differ by rounding.
 void add_tumbler(SceneBuilder& s, bool cut, double overlap, bool water_first) {
     add_media(s);
     s.medium("water", {{"ior", 1.33}, {"absorption", {0.9, 0.3, 0.1}}});

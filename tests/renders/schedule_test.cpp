@@ -190,6 +190,28 @@ TEST_CASE("light scattered in media: schedules, batches and resumption give the 
     check_schedules(scene, settings_for(scene, Algorithm::bidirectional, 40, 24));
 }
 
+TEST_CASE("bodies with priorities: schedules, batches and resumption give the same film, bit for bit") {
+    SceneBuilder s;
+    s.medium("glass", {{"ior", 1.5}, {"absorption", {0.5, 0.1, 0.2}}});
+    s.medium("ice", {{"ior", 1.31}, {"absorption", 0.2}});
+    s.medium("ink", {{"absorption", {1, 2, 3}}});
+    const auto body = [&](const nlohmann::json& surface, const char* inside, int priority) {
+        return s.material({{"surface", surface}, {"inside", inside}, {"priority", priority}});
+    };
+    add_box(s, {4, 4, 4}, s.lambertian({0.7, 0.5, 0.3}), true, at(0, 0, 0));
+    const int glass = body({{"class", "dielectric"}}, "glass", 3);
+    add_box(s, {1.4f, 1.2f, 1.4f}, glass, false, at(-0.6, -0.8, 0));
+    add_box(s, {1, 1, 1}, glass, true, at(-0.6, -0.8, 0));
+    // What touches the glass, and what reaches into it, is of another class.
+    add_box(s, {1, 1, 1}, body({{"class", "boundary"}}, "ink", 1), false, at(-0.6, -0.8, 0));
+    s.sphere(0.5, body({{"class", "dielectric"}, {"alpha", 0.3}}, "ice", 2), at(0, -0.7, 0.3));
+    s.light({{"type", "point"}, {"intensity", 2}, {"color", {1, 0.5, 0.25}}}, at(1.2, 1.2, 1.2));
+    s.perspective(1.2, at(0, 0, 1.95));
+    Scene scene = compile_test_scene(s.import());
+    REQUIRE(scene.features.body_count == 3);
+    check_schedules(scene, settings_for(scene, Algorithm::bidirectional, 40, 24));
+}
+
 TEST_CASE("more paths than the wavefront holds at once") {
     Scene scene = compile_test_scene(caustic_scene());
     for (const Algorithm algorithm : {Algorithm::forward, Algorithm::bidirectional}) {
