@@ -47,12 +47,14 @@ class Gltf:
         self.extensions = {"ETD_optics"}
 
     # Materials. `surface` is a class of ETD_optics with its parameters; `glowing` adds emission.
-    def surface(self, name, class_name, inside=None, outside=None, **parameters):
+    def surface(self, name, class_name, inside=None, outside=None, priority=None, **parameters):
         optics = {"surface": {"class": class_name, **parameters}}
         if inside:
             optics["inside"] = inside
         if outside:
             optics["outside"] = outside
+        if priority:
+            optics["priority"] = priority
         return self._material({"name": name, "extensions": {"ETD_optics": optics}})
 
     def principled(
