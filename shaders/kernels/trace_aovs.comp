@@ -41,7 +41,7 @@ void main() {
             crossing = meet_faces(path.origin, path.direction, path.bodies, hit, p);
             if (crossing.is_there) break;
             passed += hit.t;
-            path.origin = offset_origin(p.position, p.error, p.geometric_normal, path.direction);
+            path.origin = origin_behind(path.origin, p.position, p.error, p.geometric_normal, path.direction);
             path.bodies = crossing.after;
         }
         if (hit.primitive == NO_RECORD) continue;

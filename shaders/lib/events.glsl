@@ -48,7 +48,7 @@ ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float di
 #if HAS_PRIORITIES
 // Past faces that are not there.
 void pass_faces(inout Path path, SurfacePoint p, Crossing c) {
-    path.origin = offset_origin(p.position, p.error, p.geometric_normal, path.direction);
+    path.origin = origin_behind(path.origin, p.position, p.error, p.geometric_normal, path.direction);
     path.bodies = c.after;
 }
 #endif
