@@ -5,19 +5,17 @@
 
 namespace etendue {
 
-Film::Film(Device& device, uint32_t width, uint32_t height, uint64_t binding_bytes, bool merging)
+Film::Film(Device& device, uint32_t width, uint32_t height, bool merging)
     : width_(width),
       height_(height),
       merging_(merging),
-      pixels_(device, uint64_t(width) * height * pixel_bytes(), "Film"),
-      address_(create_buffer(device, std::vector<uint64_t>{pixels_.address()}, "FilmAddress")),
-      by_address_(pixels_.bytes() > binding_bytes) {
+      pixels_(device, uint64_t(width) * height * pixel_bytes(), "Film") {
     clear();
 }
 
 uint64_t Film::pixel_bytes() const { return sizeof(FilmPixel) + (merging_ ? sizeof(FilmBias) : 0); }
 
-BufferTable Film::buffers() const { return {{"Film", &pixels_}, {"FilmAddress", &address_}}; }
+BufferTable Film::buffers() const { return {{"Film", &pixels_}}; }
 
 void Film::clear() { pixels_.fill(0); }
 

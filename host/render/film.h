@@ -12,13 +12,11 @@ namespace etendue {
 
 class Film {
   public:
-    // Empty. Kernels reach a film of more than `binding_bytes` through its address. `merging`: its kernels
-    // are compiled with MERGE_VERTICES, and pixels hold what tells the bias.
-    Film(Device& device, uint32_t width, uint32_t height, uint64_t binding_bytes, bool merging = false);
+    // Empty. `merging`: its kernels are compiled with MERGE_VERTICES, and pixels hold what tells the bias.
+    Film(Device& device, uint32_t width, uint32_t height, bool merging = false);
     Film(const Film&) = delete;
 
-    bool by_address() const { return by_address_; }
-    BufferTable buffers() const;  // "Film", "FilmAddress"; valid as long as the film
+    BufferTable buffers() const;  // "Film"; valid as long as the film
 
     void clear();
     // The bytes are those of struct FilmPixel in shaders/lib/film.glsl, for every pixel.
@@ -35,8 +33,7 @@ class Film {
     uint64_t pixel_bytes() const;
     uint32_t width_, height_;
     bool merging_;
-    Buffer pixels_, address_;
-    bool by_address_;
+    Buffer pixels_;
 };
 
 // Root of the relMSE that the error layer of an image amounts to: sqrt(mean(error² / (I² + 0.01 mean(I)²)))

@@ -41,15 +41,14 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
               "Splats") {
     splats_.fill(0);
     if (techniques.connect || techniques.merge) {
-        const auto make = [&](const std::string& file, const BufferTable& table, const std::string& defines) {
-            return make_kernel(device, scene, file, table, defines);
+        const auto make = [&](const std::string& file, const BufferTable& table) {
+            return make_kernel(device, scene, file, table);
         };
         const uint64_t least = scene.features.scattering ? least_vertices_in_media : least_vertices;
         const uint64_t most = std::max(least, uint64_t(count_) * vertices_a_path);
         const uint64_t bytes = VertexMap::vertex_bytes(scene.features);
         const uint64_t room = settings.vertex_bytes / (bytes + VertexMap::grid_bytes);
-        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least, most)), bytes, make,
-                          settings.binding_bytes);
+        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least, most)), bytes, make);
         path_ends_ = Buffer(device, uint64_t(count_) * 8, "PathEnds");
     }
     BufferTable table = buffers();
@@ -57,11 +56,11 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
     if (settings.schedule != Schedule::fused) {
         wavefront_.emplace(device, scene, Wavefront::Direction::forward, techniques,
                            std::min(count_, Wavefront::wanted_paths(device)),
-                           settings.schedule == Schedule::by_class, table, defines());
+                           settings.schedule == Schedule::by_class, table);
         return;
     }
-    trace_forward_paths_ = make_kernel(device, scene, "kernels/trace_forward_paths.comp", table,
-                                       techniques.forward_defines() + defines());
+    trace_forward_paths_ =
+        make_kernel(device, scene, "kernels/trace_forward_paths.comp", table, techniques.forward_defines());
     const uint32_t a_group = trace_forward_paths_.group_size() * (device.description.type == "CPU" ? 8 : 1);
     groups_ = std::clamp((count_ + a_group - 1) / a_group, 1u, max_groups);
 }

@@ -22,7 +22,6 @@ class ForwardRays {
                 const BufferTable& film);
     // What kernels of backward rays share.
     BufferTable buffers() const;
-    std::string defines() const { return vertices_ ? vertices_->defines() : ""; }
     // Traces the forward paths of a pass and sorts their vertices. Where the vertices do not fit, the pass is
     // repeated with fewer paths, and so are all that follow.
     void trace(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings);

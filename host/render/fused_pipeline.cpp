@@ -8,8 +8,7 @@ Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const Rende
                                        const Techniques& techniques, ForwardRays* forward,
                                        SpectralPasses& spectra, const BufferTable& film)
     : Pipeline(s, forward, spectra) {
-    trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", film,
-                              techniques.backward_defines() + (forward ? forward->defines() : ""));
+    trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", film, techniques.backward_defines());
     // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
     const uint32_t pixels = settings.width * settings.height;
     const uint32_t pixels_a_group = trace_paths.group_size() * (device.description.type == "CPU" ? 8 : 1);

@@ -107,12 +107,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     settings_.algorithm = choice_.algorithm;
     settings_.forward_paths = choice_.forward_paths;
     const Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
-    // After the pilots of the choice, whose own films set the feature.
-    film_ = std::make_unique<Film>(
-        device, settings.width, settings.height,
-        settings.binding_bytes ? settings.binding_bytes : device.description.max_buffer_range,
-        techniques.merge);
-    scene.features.film_by_address = film_->by_address();
+    film_ = std::make_unique<Film>(device, settings.width, settings.height, techniques.merge);
     BufferTable film = film_->buffers();
     film["CounterSums"] = &counter_sums_;
     scene.features.spectral_bins = scene.features.spectral ? settings.spectral_bins : 0;

@@ -43,7 +43,6 @@ struct RenderSettings {
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
     float merge_radius = 1;                       // of the first pass, in widths of a pixel; > 0
     uint32_t spectral_bins = 0;  // of a spectral image, where paths carry wavelengths; 0 = none
-    uint64_t binding_bytes = 0;  // a larger film is written through its address; 0 = what the device can bind
 };
 
 // Sums over all passes. Importance: every path starts with 1.

@@ -12,12 +12,11 @@ namespace etendue {
 SpectralFilm::SpectralFilm(Device& device, uint32_t pixels, uint32_t bins)
     : pixels_(pixels),
       bins_(bins),
-      sums_(device, uint64_t(pixels) * bins * sizeof(glm::vec2), "SpectralFilm"),
-      address_(create_buffer(device, std::vector<uint64_t>{sums_.address()}, "SpectralFilmAddress")) {
+      sums_(device, uint64_t(pixels) * bins * sizeof(glm::vec2), "SpectralFilm") {
     clear();
 }
 
-BufferTable SpectralFilm::buffers() const { return {{"SpectralFilmAddress", &address_}}; }
+BufferTable SpectralFilm::buffers() const { return {{"SpectralFilm", &sums_}}; }
 
 void SpectralFilm::clear() { sums_.fill(0); }
 

@@ -26,7 +26,7 @@ class SpectralFilm {
 
   private:
     uint32_t pixels_, bins_;
-    Buffer sums_, address_;
+    Buffer sums_;
 };
 
 // "S0.550,000000nm": of a bin by the wavelength in its middle.

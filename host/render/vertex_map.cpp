@@ -30,17 +30,11 @@ uint64_t VertexMap::vertex_bytes(const Features& features) {
     return 64 + (features.spectral ? 4 : 0) + (features.body_count > 0 ? 4 : 0);
 }
 
-VertexMap::VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, const KernelMaker& make,
-                     uint64_t binding_bytes)
-    : capacity_(capacity),
-      buckets_(bucket_count(capacity)),
-      by_address_(capacity * vertex_bytes >
-                  (binding_bytes ? binding_bytes : device.description.max_buffer_range)),
-      cpu_(device.description.type == "CPU") {
+VertexMap::VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, const KernelMaker& make)
+    : capacity_(capacity), buckets_(bucket_count(capacity)), cpu_(device.description.type == "CPU") {
     if (capacity == 0 || capacity > max_capacity)
         fail_input("{} light vertices; allowed: 1 to {}", capacity, max_capacity);
     vertices_ = Buffer(device, capacity * vertex_bytes, "LightVertices");
-    address_ = create_buffer(device, std::vector<uint64_t>{vertices_.address()}, "LightVerticesAddress");
     counts_ = create_buffer(device, std::vector<LightVertexCounts>{{capacity, buckets_ - 1, 0, 0}},
                             "LightVertexCounts");
     places_ = Buffer(device, capacity * place_bytes, "GridPlaces");
@@ -53,20 +47,18 @@ VertexMap::VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, c
     table["BucketSums"] = &bucket_sums_;
     table["GridItems"] = &items_;
     table["LargeBuckets"] = &large_buckets_;
-    scan_buckets_ = make("kernels/scan_buckets.comp", table, defines());
-    sort_vertices_ = make("kernels/sort_vertices.comp", table, defines());
-    order_vertices_ = make("kernels/order_vertices.comp", table, defines());
-    order_large_buckets_ = make("kernels/order_large_buckets.comp", table, defines());
+    scan_buckets_ = make("kernels/scan_buckets.comp", table);
+    sort_vertices_ = make("kernels/sort_vertices.comp", table);
+    order_vertices_ = make("kernels/order_vertices.comp", table);
+    order_large_buckets_ = make("kernels/order_large_buckets.comp", table);
 }
 
 BufferTable VertexMap::buffers() const {
-    return {{"LightVertices", &vertices_},     {"LightVerticesAddress", &address_},
-            {"LightVertexCounts", &counts_},   {"GridPlaces", &places_},
-            {"BucketStarts", &bucket_starts_}, {"GridEntries", &entries_}};
-}
-
-std::string VertexMap::defines() const {
-    return by_address_ ? "#define LIGHT_VERTICES_BY_ADDRESS 1\n" : "#define LIGHT_VERTICES_BY_ADDRESS 0\n";
+    return {{"LightVertices", &vertices_},
+            {"LightVertexCounts", &counts_},
+            {"GridPlaces", &places_},
+            {"BucketStarts", &bucket_starts_},
+            {"GridEntries", &entries_}};
 }
 
 void VertexMap::clear(CommandList& commands) const {
@@ -96,8 +88,8 @@ VertexMap::Counts VertexMap::counts() const {
 
 uint64_t VertexMap::bytes() const {
     uint64_t sum = 0;
-    for (const Buffer* buffer : {&vertices_, &address_, &counts_, &places_, &bucket_starts_, &bucket_sums_,
-                                 &items_, &large_buckets_, &entries_})
+    for (const Buffer* buffer : {&vertices_, &counts_, &places_, &bucket_starts_, &bucket_sums_, &items_,
+                                 &large_buckets_, &entries_})
         sum += buffer->bytes();
     return sum;
 }

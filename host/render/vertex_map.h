@@ -11,21 +11,17 @@ namespace etendue {
 
 class VertexMap {
   public:
-    // Compiles a kernel: its file under shaders/, its buffers, its macros.
-    using KernelMaker = std::function<Kernel(const std::string& file, const BufferTable& buffers,
-                                             const std::string& defines)>;
+    // Compiles a kernel: its file under shaders/, its buffers.
+    using KernelMaker = std::function<Kernel(const std::string& file, const BufferTable& buffers)>;
 
     static uint64_t vertex_bytes(const Features& features);   // of LightVertex (lib/light_vertices.glsl)
     static constexpr uint64_t grid_bytes = 12 + 24 + 16 + 8;  // a vertex: place, item, entry, two buckets
 
-    // Room for `capacity` light vertices, 1 to 2^28 - 2, and a bucket for each, up to 2^22. Vertices of more
-    // than `binding_bytes` are read by address; 0 = what the device can bind.
-    VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, const KernelMaker& make,
-              uint64_t binding_bytes = 0);
+    // Room for `capacity` light vertices, 1 to 2^28 - 2, and a bucket for each, up to 2^22.
+    VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, const KernelMaker& make);
 
-    // What kernels need that include lib/light_vertices.glsl or lib/vertex_grid.glsl.
+    // Of kernels that include lib/light_vertices.glsl or lib/vertex_grid.glsl.
     BufferTable buffers() const;
-    std::string defines() const;
 
     // Before the first vertex of a pass.
     void clear(CommandList& commands) const;
@@ -44,10 +40,8 @@ class VertexMap {
 
   private:
     uint32_t capacity_, buckets_;
-    bool by_address_;
     bool cpu_;
-    Buffer vertices_, address_, counts_, places_, bucket_starts_, bucket_sums_, items_, large_buckets_,
-        entries_;
+    Buffer vertices_, counts_, places_, bucket_starts_, bucket_sums_, items_, large_buckets_, entries_;
     Kernel scan_buckets_, sort_vertices_, order_vertices_, order_large_buckets_;
 };
 

@@ -51,7 +51,7 @@ uint32_t Wavefront::groups(const Kernel& kernel, uint32_t items, uint32_t items_
 }
 
 Wavefront::Wavefront(Device& device, Scene& scene, Direction direction, const Techniques& techniques,
-                     uint32_t slots, bool by_class, const BufferTable& buffers, const std::string& defines)
+                     uint32_t slots, bool by_class, const BufferTable& buffers)
     : slots_(slots), items_a_lane_(device.description.type == "CPU" ? 16 : 1) {
     const bool forward = direction == Direction::forward;
     shadow_queues_ = scene.features.light_count == 0 ? 0 : techniques.connect && !forward ? 2 : 1;
@@ -68,8 +68,7 @@ Wavefront::Wavefront(Device& device, Scene& scene, Direction direction, const Te
     hit_instances_ = Buffer(device, scene.features.instances ? n * 4 : 0, "HitInstances");
     BufferTable table = this->buffers();
     table.insert(buffers.begin(), buffers.end());
-    const std::string all =
-        (forward ? techniques.forward_defines() : techniques.backward_defines()) + defines;
+    const std::string all = forward ? techniques.forward_defines() : techniques.backward_defines();
     emit_rays_ =
         make_kernel(device, scene, forward ? "kernels/emit_light_rays.comp" : "kernels/emit_camera_rays.comp",
                     table, all);

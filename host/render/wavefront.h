@@ -16,10 +16,10 @@ class Wavefront {
     // How many paths a device is kept busy by.
     static uint32_t wanted_paths(const Device& device);
 
-    // Room for `slots` paths. `buffers` and `defines`: what the kernels need besides the scene and the
+    // Room for `slots` paths. `buffers`: what the kernels need besides the scene and the
     // techniques.
     Wavefront(Device& device, Scene& scene, Direction direction, const Techniques& techniques, uint32_t slots,
-              bool by_class, const BufferTable& buffers, const std::string& defines);
+              bool by_class, const BufferTable& buffers);
 
     uint32_t slots() const { return slots_; }
     BufferTable buffers() const;

@@ -26,8 +26,7 @@ Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, con
                                                bool by_class)
     : Pipeline(s, forward, spectra),
       paths(device, scene, Wavefront::Direction::backward, techniques,
-            slots_for(device, s.width * s.height, forward), by_class, film,
-            forward ? forward->defines() : ""),
+            slots_for(device, s.width * s.height, forward), by_class, film),
       accumulate_film(make_kernel(device, scene, "kernels/accumulate_film.comp",
                                   joined(film, paths.buffers()), techniques.backward_defines())) {}
 

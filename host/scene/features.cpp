@@ -41,16 +41,6 @@ std::string Features::defines() const {
     if (spectral) define("SPECTRUM_COUNT", spectrum_count);
     if (spectral) define("COLOR_LATTICE", color_lattice);
     define("HAS_LIGHT_TREE", light_tree);
-    define("NODES_BY_ADDRESS", nodes_by_address);
-    define("PRIMITIVES_BY_ADDRESS", primitives_by_address);
-    define("VERTICES_BY_ADDRESS", vertices_by_address);
-    define("TRIANGLE_INDICES_BY_ADDRESS", triangle_indices_by_address);
-    define("TEXELS_BY_ADDRESS", texels_by_address);
-    define("ENVIRONMENT_TEXELS_BY_ADDRESS", environment_texels_by_address);
-    define("DENSITY_VALUES_BY_ADDRESS", density_values_by_address);
-    define("MEASURED_POINTS_BY_ADDRESS", measured_points_by_address);
-    define("MEASURED_SPECTRA_BY_ADDRESS", measured_spectra_by_address);
-    define("FILM_BY_ADDRESS", film_by_address);
     if (spectral_bins > 0) define("SPECTRAL_BINS", spectral_bins);
     define("TEXTURE_FORMATS", texture_formats);
     define("BVH_STACK_SIZE", bvh_stack_size);

@@ -26,16 +26,6 @@ struct Features {
     uint32_t spectrum_count = 0;
     bool independent_samples = false;  // hashes take the place of Sobol' points
     bool light_tree = false;
-    bool nodes_by_address = false;  // arrays too large for one binding
-    bool primitives_by_address = false;
-    bool vertices_by_address = false;
-    bool triangle_indices_by_address = false;
-    bool texels_by_address = false;
-    bool environment_texels_by_address = false;
-    bool density_values_by_address = false;
-    bool measured_points_by_address = false;
-    bool measured_spectra_by_address = false;
-    bool film_by_address = false;  // set by the renderer
     uint32_t spectral_bins = 0;    // of a spectral image; set by the renderer
     uint32_t texture_formats = 7;  // of lib/textures.glsl, a bit each
     uint32_t bvh_stack_size = 64;  // references that a traversal can hold back

@@ -64,8 +64,7 @@ struct SceneOptions {
     ColorMode color = ColorMode::automatic;
     bool spectral_image = false;  // that is asked for: automatic color is spectral
     SampleSequence samples = SampleSequence::sobol;
-    unsigned threads = 0;        // for building; 0 = all
-    uint64_t binding_bytes = 0;  // arrays above this are read by address; 0 = what the device can bind
+    unsigned threads = 0;  // for building; 0 = all
 };
 
 // Errors: fail_input for what is wrong in the scene, fail_device for what the device cannot hold.

@@ -91,18 +91,6 @@ class SceneCompiler {
         out_.buffers[name] = create_buffer(device_, data, name);
     }
 
-    // An array that may exceed a binding: its address goes into the buffer LargeArrays
-    // (lib/large_arrays.glsl).
-    template <class T>
-    void upload_large(const std::string& name, const std::vector<T>& data, uint32_t slot, bool& by_address) {
-        upload(name, data);
-        const uint64_t limit =
-            options_.binding_bytes ? options_.binding_bytes : device_.description.max_buffer_range;
-        by_address = out_.buffers[name].bytes() > limit;
-        large_arrays_[slot] = out_.buffers[name].address();
-        upload("LargeArrays", std::vector<uint64_t>(std::begin(large_arrays_), std::end(large_arrays_)));
-    }
-
     Device& device_;
     const SceneDescription& in_;
     const SceneOptions& options_;
@@ -115,12 +103,11 @@ class SceneCompiler {
     std::vector<DensityGridRecord> grids_;
     std::vector<glm::dmat4> grid_placements_;  // world_from_lattice
     DensityBricks density_bricks_;
-    MeasuredBsdf measured_;                       // of all files, one after the other
+    MeasuredBsdf measured_;  // of all files, one after the other
     std::map<std::filesystem::path, MeasuredRef> measured_files_;
     std::vector<MaterialRecord> materials_;
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
     World world_;
-    uint64_t large_arrays_[9] = {};
     std::map<std::string, uint32_t> phases_;  // RecordRefs, by their places in the scene
     std::vector<uint32_t> lights_;            // RecordRefs
     uint32_t first_area_light_ = 0;           // in lights_, before they are sorted

@@ -47,11 +47,10 @@ std::vector<Box> SceneCompiler::shape_bounds(const std::vector<uint32_t>& refs) 
 }
 
 void SceneCompiler::upload_world() {
-    Features& f = out_.features;
-    upload_large("Nodes", world_.nodes, 0, f.nodes_by_address);
-    upload_large("Primitives", world_.primitives, 1, f.primitives_by_address);
-    upload_large("Vertices", world_.vertices, 2, f.vertices_by_address);
-    upload_large("TriangleIndices", world_.triangle_indices, 3, f.triangle_indices_by_address);
+    upload("Nodes", world_.nodes);
+    upload("Primitives", world_.primitives);
+    upload("Vertices", world_.vertices);
+    upload("TriangleIndices", world_.triangle_indices);
     upload("Transforms", world_.transforms);
 }
 

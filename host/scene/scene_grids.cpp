@@ -72,7 +72,7 @@ void SceneCompiler::upload_grids() {
     }
     upload("DensityGrids", grids_);
     upload("DensityBricks", density_bricks_.bricks);
-    upload_large("DensityValues", density_bricks_.values, 6, out_.features.density_values_by_address);
+    upload("DensityValues", density_bricks_.values);
 }
 
 }  // namespace etendue

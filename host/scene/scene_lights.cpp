@@ -85,7 +85,7 @@ void SceneCompiler::drop_dark_triangles(std::vector<uint32_t>& primitives) {
 void SceneCompiler::measure_lights() {
     for (const InterfaceInfo& interface : all_interfaces())
         upload(interface.buffer, records_[interface.interface].bytes());
-    upload_large("EnvironmentTexels", environment_texels_, 5, out_.features.environment_texels_by_address);
+    upload("EnvironmentTexels", environment_texels_);
     upload("Materials", materials_);
     upload_world();
     upload("Lights", lights_);

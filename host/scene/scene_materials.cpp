@@ -69,7 +69,7 @@ MeasuredRef SceneCompiler::add_measured(const std::filesystem::path& file) {
 
 void SceneCompiler::upload_measured() {
     if (measured_files_.empty()) return;
-    upload_large("MeasuredPoints", measured_.points, 7, out_.features.measured_points_by_address);
+    upload("MeasuredPoints", measured_.points);
     upload("MeasuredColors", measured_.colors);
 }
 
@@ -132,7 +132,7 @@ void SceneCompiler::add_textures() {
     if (textures_.empty()) return;
     const PackedTextures packed = pack_textures(in_.images, textures_);
     out_.features.texture_formats = packed.formats;
-    upload_large("Texels", packed.texels, 4, out_.features.texels_by_address);
+    upload("Texels", packed.texels);
     upload("Textures", packed.textures);
 }
 

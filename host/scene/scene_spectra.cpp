@@ -60,8 +60,7 @@ void SceneCompiler::choose_color() {
         const SpectralTable table = value.as_table(kind);
         out_.spectra.push_back(kind == SpectralKind::radiance ? table * radiance_unit : table);
     }
-    if (!measured_files_.empty())
-        upload_large("MeasuredSpectra", measured_.spectra, 8, out_.features.measured_spectra_by_address);
+    if (!measured_files_.empty()) upload("MeasuredSpectra", measured_.spectra);
     out_.features.spectrum_count = uint32_t(out_.spectra.size());
 }
 

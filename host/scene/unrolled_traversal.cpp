@@ -384,10 +384,10 @@ UnrolledTraversal unroll_traversal(World& world, const SceneDescription& scene, 
         shared + nearest +
         "    if (patch_entry == NO_RECORD) return Hit(t_max, vec2(0), NO_RECORD, NO_RECORD);\n"
         "    vec4 p = vec4(origin + best * direction, 1.0);\n"
-        "    uint piece = patch_entry + (dot(uintBitsToFloat(node_at(patch_entry)), p) >= 0.0 ? 1u : 4u);\n"
-        "    vec2 uv = vec2(dot(uintBitsToFloat(node_at(piece + 1u)), p), dot(uintBitsToFloat(node_at(piece "
-        "+ 2u)), p));\n"
-        "    return Hit(best, uv, node_at(piece).x, NO_RECORD);\n"
+        "    uint piece = patch_entry + (dot(uintBitsToFloat(nodes[patch_entry]), p) >= 0.0 ? 1u : 4u);\n"
+        "    vec2 uv = vec2(dot(uintBitsToFloat(nodes[piece + 1u]), p), dot(uintBitsToFloat(nodes[piece "
+        "+ 2u]), p));\n"
+        "    return Hit(best, uv, nodes[piece].x, NO_RECORD);\n"
         "}\n\n"
         "bool find_occlusion(vec3 origin, vec3 direction, float t_max) {\n"
         "    float best = t_max;\n    bool occluded = false;\n" +

@@ -10,7 +10,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     Counters counters = no_counters();
     if (i < tile_pixels) {
-        FilmPixel pixel = film_at(first_pixel + i);
+        FilmPixel pixel = film[first_pixel + i];
         for (uint s = 0u; s < samples; ++s) {
 #if SPECTRAL
             batch_pass = s;
@@ -21,7 +21,7 @@ void main() {
 #endif
             record_sample(pixel, first_pixel + i, path_states[s * tile_pixels + i].radiance, counters);
         }
-        film_at(first_pixel + i) = pixel;
+        film[first_pixel + i] = pixel;
     }
     store_counters(counters);
 }

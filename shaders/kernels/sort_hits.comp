@@ -45,7 +45,7 @@ void main() {
 #endif
             uint primitive = floatBitsToUint(hits[slot].w);
             tag = 0u;
-            if (primitive != NO_RECORD) tag = record_tag(materials[primitive_at(primitive).material].surface);
+            if (primitive != NO_RECORD) tag = record_tag(materials[primitives[primitive].material].surface);
         }
         for (uint c = 0u; c < uint(SCATTER_CLASS_COUNT); ++c) {
             bool wanted = tag == SCATTER_CLASS_TAGS[c] || (c == 0u && tag == 0u);

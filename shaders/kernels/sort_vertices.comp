@@ -9,8 +9,8 @@ void main() {
     uint count = stored_light_vertices();
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) {
-        if ((light_vertex_at(i).previous & LIGHT_VERTEX_MERGES) == 0u) continue;
+        if ((light_vertices[i].previous & LIGHT_VERTEX_MERGES) == 0u) continue;
         GridPlace place = grid_places[i];
-        grid_items[bucket_starts[place.bucket] + place.rank] = GridItem(light_vertex_at(i).position, i, place.key, place.bucket);
+        grid_items[bucket_starts[place.bucket] + place.rank] = GridItem(light_vertices[i].position, i, place.key, place.bucket);
     }
 }

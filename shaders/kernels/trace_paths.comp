@@ -27,7 +27,7 @@ void main() {
     Path path;
     bool alive = false;
     FilmPixel sum;
-    if (pixel < pixels) sum = film_at(pixel);
+    if (pixel < pixels) sum = film[pixel];
     while (pixel < pixels) {
         if (!alive) {
 #if SPECTRAL
@@ -57,10 +57,10 @@ void main() {
 #endif
             record_sample(sum, pixel, path.radiance, counters);
             if (++sample_index == sample_count) {
-                film_at(pixel) = sum;
+                film[pixel] = sum;
                 pixel += lanes;
                 sample_index = 0u;
-                if (pixel < pixels) sum = film_at(pixel);
+                if (pixel < pixels) sum = film[pixel];
             }
         }
     }

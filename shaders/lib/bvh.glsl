@@ -1,13 +1,13 @@
 // Layout of the hierarchies that the host builds (host/scene/bvh.h), and the test of a node's two boxes.
 //
-// node_at(i) is an entry (uvec4) of the `nodes` buffer. A tree starts with a header of two entries:
+// nodes[i] is an entry (uvec4) of the `nodes` buffer. A tree starts with a header of two entries:
 //     lower corner of its grid (float bits), reference of the root | cells per metre, largest extent in m (float bits)
 // then inner nodes, two entries each, one a child: bounds along x, y, z (low half: lower bound, high half: upper
 // bound, in cells of the grid, rounded outward), reference of the child. With HAS_FLOAT_NODES four entries: for
 // each child its lower corner and reference, its upper corner.
 // A reference is the entry of an inner node, or a leaf: bit 31, count - 1 in bits 29 and 30, first primitive.
 //
-// primitive_at(i) is an entry of `primitives`, struct Triangle. Its attributes' upper two bits are the kind:
+// primitives[i] is an entry of `primitives`, struct Triangle. Its attributes' upper two bits are the kind:
 //     triangle   the vertices; index = its place in the mesh's lists of vertex indices
 //     shape      v0.x RecordRef of the geometry, v0.y index of its transform (bits)
 //     instance   v0.x header of the mesh's own tree, v0.y index of its transform (bits)
@@ -17,22 +17,9 @@
 #include "interfaces/geometry.glsl"
 #include "geometry/triangle.glsl"
 
-#include "lib/large_arrays.glsl"
 
-#if NODES_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer NodesAt { uvec4 entries[]; };
-#define node_at(i) NodesAt(nodes_address).entries[i]
-#else
 layout(scalar) readonly buffer Nodes { uvec4 nodes[]; };
-#define node_at(i) nodes[i]
-#endif
-#if PRIMITIVES_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer PrimitivesAt { Triangle entries[]; };
-#define primitive_at(i) PrimitivesAt(primitives_address).entries[i]
-#else
 layout(scalar) readonly buffer Primitives { Triangle primitives[]; };
-#define primitive_at(i) primitives[i]
-#endif
 
 const uint BVH_LEAF = 0x80000000u;
 const uint BVH_FIRST_MASK = 0x1FFFFFFFu;
@@ -68,7 +55,7 @@ struct BoxRay {
 };
 
 BoxRay box_ray(uint header, vec3 origin, vec3 direction) {
-    uvec4 first = node_at(header), second = node_at(header + 1u);
+    uvec4 first = nodes[header], second = nodes[header + 1u];
     vec3 from_lo = origin - uintBitsToFloat(first.xyz);
     float extent = uintBitsToFloat(second.w);
 #if HAS_FLOAT_NODES
@@ -100,7 +87,7 @@ BoxRay box_ray(uint header, vec3 origin, vec3 direction) {
 
 #if HAS_FLOAT_NODES
 void meet_boxes(BoxRay ray, uint i, float limit, out vec2 near, out vec2 far, out uvec2 child) {
-    uvec4 l0 = node_at(i), h0 = node_at(i + 1u), l1 = node_at(i + 2u), h1 = node_at(i + 3u);
+    uvec4 l0 = nodes[i], h0 = nodes[i + 1u], l1 = nodes[i + 2u], h1 = nodes[i + 3u];
     bvec3 down = notEqual(ray.near_shift, uvec3(0u));
     vec3 n0 = (uintBitsToFloat(mix(l0.xyz, h0.xyz, down)) - ray.near_origin) * ray.inverse;
     vec3 f0 = (uintBitsToFloat(mix(h0.xyz, l0.xyz, down)) - ray.far_origin) * ray.inverse;
@@ -115,7 +102,7 @@ void meet_boxes(BoxRay ray, uint i, float limit, out vec2 near, out vec2 far, ou
 // The ends of the ray's way through the two boxes of node `i`, along the ray from `start`; a box is met where
 // near <= far. The last factor widens the way by the rounding of three operations (Ize 2013).
 void meet_boxes(BoxRay ray, uint i, float limit, out vec2 near, out vec2 far, out uvec2 child) {
-    uvec4 e0 = node_at(i), e1 = node_at(i + 1u);
+    uvec4 e0 = nodes[i], e1 = nodes[i + 1u];
     uvec3 far_shift = 16u - ray.near_shift;
     vec3 n0 = (vec3((e0.xyz >> ray.near_shift) & 0xFFFFu) - ray.near_origin) * ray.inverse;
     vec3 f0 = (vec3((e0.xyz >> far_shift) & 0xFFFFu) - ray.far_origin) * ray.inverse;

@@ -3,7 +3,6 @@
 // those whose density varies keep its values. Written by host/scene/density_bricks.
 #include "lib/constants.glsl"
 #include "lib/free_path.glsl"
-#include "lib/large_arrays.glsl"
 #include "lib/records.glsl"
 
 struct GridRef { uint index; };  // a file with a density, or where it stands -> index of a DensityGrid
@@ -22,13 +21,7 @@ struct DensityBrick {
 };
 layout(scalar, set = 0) readonly buffer DensityGrids { DensityGrid density_grids[]; };
 layout(scalar, set = 0) readonly buffer DensityBricks { DensityBrick density_bricks[]; };
-#if DENSITY_VALUES_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer DensityValuesAt { float entries[]; };
-#define density_value_at(i) DensityValuesAt(density_values_address).entries[i]
-#else
 layout(scalar, set = 0) readonly buffer DensityValues { float density_values[]; };
-#define density_value_at(i) density_values[i]
-#endif
 
 float least_of(vec3 v) { return min(v.x, min(v.y, v.z)); }
 float greatest_of(vec3 v) { return max(v.x, max(v.y, v.z)); }
@@ -47,9 +40,9 @@ float brick_density(DensityBrick b, vec3 at) {
     vec3 f = at - vec3(cell);
     const uint side = uint(BRICK_CELLS) + 1u;
     uint i = b.first_value + (cell.z * side + cell.y) * side + cell.x;
-    vec4 low = vec4(density_value_at(i), density_value_at(i + 1u), density_value_at(i + side), density_value_at(i + side + 1u));
+    vec4 low = vec4(density_values[i], density_values[i + 1u], density_values[i + side], density_values[i + side + 1u]);
     i += side * side;
-    vec4 high = vec4(density_value_at(i), density_value_at(i + 1u), density_value_at(i + side), density_value_at(i + side + 1u));
+    vec4 high = vec4(density_values[i], density_values[i + 1u], density_values[i + side], density_values[i + side + 1u]);
     vec4 v = mix(low, high, f.z);
     vec2 x = mix(v.xz, v.yw, f.x);
     return clamp(mix(x.x, x.y, f.y), b.least, b.greatest);

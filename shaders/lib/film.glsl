@@ -19,15 +19,7 @@ struct FilmPixel {
     vec3 bias_difference;
 #endif
 };
-// film_at(i): through the film's address where it is larger than a binding (lib/large_arrays.glsl).
-#if FILM_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FilmAt { FilmPixel entries[]; };
-layout(scalar, set = 0) readonly buffer FilmAddress { uvec2 film_address; };
-#define film_at(i) FilmAt(film_address).entries[i]
-#else
 layout(scalar, set = 0) buffer Film { FilmPixel film[]; };
-#define film_at(i) film[i]
-#endif
 
 void add_compensated(inout vec3 sum, inout vec3 compensation, vec3 value) {
     precise vec3 total = sum + value;

@@ -26,15 +26,7 @@ const uint LIGHT_VERTEX_FLAGS = 0xF0000000u;   // the others are free for the al
 // `vertex` before this one on its path, or NO_LIGHT_VERTEX, and flags.
 uint light_vertex_link(uint vertex, uint flags) { return (vertex & ~LIGHT_VERTEX_FLAGS) | (flags & LIGHT_VERTEX_FLAGS); }
 
-// light_vertex_at(i): through their address where they are larger than a binding (lib/large_arrays.glsl).
-#if LIGHT_VERTICES_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LightVerticesAt { LightVertex entries[]; };
-layout(scalar, set = 0) readonly buffer LightVerticesAddress { uvec2 light_vertices_address; };
-#define light_vertex_at(i) LightVerticesAt(light_vertices_address).entries[i]
-#else
 layout(scalar, set = 0) buffer LightVertices { LightVertex light_vertices[]; };
-#define light_vertex_at(i) light_vertices[i]
-#endif
 
 layout(scalar, set = 0) buffer LightVertexCounts {
     uint light_vertex_capacity;  // below NO_LIGHT_VERTEX
@@ -50,6 +42,6 @@ uint stored_light_vertices() { return min(wanted_light_vertices, light_vertex_ca
 uint append_light_vertex(LightVertex vertex) {
     uint place = atomicAdd(wanted_light_vertices, 1u);
     if (place >= light_vertex_capacity) return NO_LIGHT_VERTEX;
-    light_vertex_at(place) = vertex;
+    light_vertices[place] = vertex;
     return place;
 }

@@ -12,14 +12,7 @@ struct MeasuredMap {
     uint width, height;
 };
 
-#include "lib/large_arrays.glsl"
-#if MEASURED_POINTS_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MeasuredPointsAt { vec2 entries[]; };
-#define measured_point_at(i) MeasuredPointsAt(measured_points_address).entries[i]
-#else
 layout(scalar, set = 0) readonly buffer MeasuredPoints { vec2 measured_points[]; };
-#define measured_point_at(i) measured_points[i]
-#endif
 
 // Slices around a fixed direction: two, or four where its azimuth counts, too.
 #ifndef MEASURED_SLICES
@@ -39,13 +32,13 @@ uint map_slice(MeasuredMap m, uint index) { return m.first + index * m.height * 
 float list_place(uint first, uint count, float x) {
     uint below = 0u;
     [[dont_unroll]] for (uint step = 512u; step > 0u; step >>= 1)
-        if (below + step + 1u < count && measured_point_at(first + below + step).x <= x) below += step;
-    float a = measured_point_at(first + below).x, b = measured_point_at(first + min(below + 1u, count - 1u)).x;
+        if (below + step + 1u < count && measured_points[first + below + step].x <= x) below += step;
+    float a = measured_points[first + below].x, b = measured_points[first + min(below + 1u, count - 1u)].x;
     return float(below) + (b > a ? clamp((x - a) / (b - a), 0.0, 1.0) : 0.0);
 }
 float list_number(uint first, float place, uint count) {
     uint below = min(uint(place), count - 2u);
-    return mix(measured_point_at(first + below).x, measured_point_at(first + below + 1u).x, place - float(below));
+    return mix(measured_points[first + below].x, measured_points[first + below + 1u].x, place - float(below));
 }
 
 // The cell between points that a place is in.
@@ -55,8 +48,8 @@ float map_slice_value(MeasuredMap m, uint index, vec2 place) {
     uvec2 cell = map_cell(m, place);
     vec2 f = place - vec2(cell);
     uint p = map_slice(m, index) + m.height + cell.y * m.width + cell.x;
-    return mix(mix(measured_point_at(p).x, measured_point_at(p + 1u).x, f.x),
-               mix(measured_point_at(p + m.width).x, measured_point_at(p + m.width + 1u).x, f.x), f.y);
+    return mix(mix(measured_points[p].x, measured_points[p + 1u].x, f.x),
+               mix(measured_points[p + m.width].x, measured_points[p + m.width + 1u].x, f.x), f.y);
 }
 
 float map_value(MeasuredMap m, MeasuredSlices s, vec2 place) {
@@ -71,7 +64,7 @@ vec2 map_mix(MeasuredMap m, MeasuredSlices s, uint offset, uint step, float f) {
     vec2 sums = vec2(0);
     [[dont_unroll]] for (uint k = 0u; k < MEASURED_SLICES; ++k) {
         uint p = map_slice(m, s.index[k]) + offset;
-        sums += s.weight[k] * mix(measured_point_at(p), measured_point_at(p + step), f);
+        sums += s.weight[k] * mix(measured_points[p], measured_points[p + step], f);
     }
     return sums;
 }

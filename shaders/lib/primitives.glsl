@@ -22,20 +22,8 @@ struct Vertex {
     vec4 tangent;  // unit, w = ±1; zero = derive it from uv0
     vec2 uv0, uv1;
 };
-#if VERTICES_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer VerticesAt { Vertex entries[]; };
-#define vertex_at(i) VerticesAt(vertices_address).entries[i]
-#else
 layout(scalar) readonly buffer Vertices { Vertex vertices[]; };
-#define vertex_at(i) vertices[i]
-#endif
-#if TRIANGLE_INDICES_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TriangleIndicesAt { uvec3 entries[]; };
-#define triangle_indices_at(i) TriangleIndicesAt(triangle_indices_address).entries[i]
-#else
 layout(scalar) readonly buffer TriangleIndices { uvec3 triangle_indices[]; };
-#define triangle_indices_at(i) triangle_indices[i]
-#endif
 #endif
 
 vec3 absolute_map(mat4x3 m, vec3 v, float w) {
@@ -75,7 +63,7 @@ vec3 tangent_from_uv(Triangle r, vec2 uv_0, vec2 uv_1, vec2 uv_2, out float hand
 
 // What the ray has hit. `hit.primitive` must not be NO_RECORD.
 SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
-    Triangle r = primitive_at(hit.primitive);
+    Triangle r = primitives[hit.primitive];
     SurfacePoint s;
     s.material = r.material;
     s.light = r.light;
@@ -100,8 +88,8 @@ SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
         s.uv0 = s.uv1 = vec2(0);
         s.tangent = vec4(p.tangent, 1.0);
 #if HAS_VERTEX_ATTRIBUTES
-        uvec3 indices = triangle_indices_at(attributes_index(r.attributes));
-        Vertex a = vertex_at(indices.x), b = vertex_at(indices.y), c = vertex_at(indices.z);
+        uvec3 indices = triangle_indices[attributes_index(r.attributes)];
+        Vertex a = vertices[indices.x], b = vertices[indices.y], c = vertices[indices.z];
         vec3 weights = vec3(1.0 - hit.uv.x - hit.uv.y, hit.uv);
         shading = mat3(a.normal, b.normal, c.normal) * weights;
         s.uv0 = mat3x2(a.uv0, b.uv0, c.uv0) * weights;
@@ -115,7 +103,7 @@ SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
         if (dot(tangent.xyz, tangent.xyz) > 0.0) s.tangent = tangent;
 #endif
 #if HAS_INSTANCES
-        if (hit.instance != NO_RECORD) transform = floatBitsToUint(primitive_at(hit.instance).v0.y);
+        if (hit.instance != NO_RECORD) transform = floatBitsToUint(primitives[hit.instance].v0.y);
 #endif
     }
 #endif
@@ -169,7 +157,7 @@ vec3 origin_behind(vec3 from, vec3 position, vec3 error, vec3 normal, vec3 direc
 
 // Evenly by area, of a shape by that of its local frame. `error`: bound of the distance from the exact surface, per axis, m.
 GeometrySample primitive_sample(uint primitive, vec2 u, out vec3 error) {
-    Triangle r = primitive_at(primitive);
+    Triangle r = primitives[primitive];
     GeometrySample s = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
     error = vec3(0);
 #if HAS_SHAPES
@@ -198,7 +186,7 @@ GeometrySample primitive_sample(uint primitive, vec2 u, out vec3 error) {
 
 // Of primitive_sample, at a point with this normal.
 float primitive_pdf(uint primitive, vec3 normal) {
-    Triangle r = primitive_at(primitive);
+    Triangle r = primitives[primitive];
     float pdf = 0.0;
 #if HAS_SHAPES
     if (attributes_kind(r.attributes) == KIND_SHAPE) {
@@ -213,7 +201,7 @@ float primitive_pdf(uint primitive, vec3 normal) {
 }
 
 GeometrySample primitive_sample_towards(uint primitive, vec3 reference, vec2 u) {
-    Triangle r = primitive_at(primitive);
+    Triangle r = primitives[primitive];
     GeometrySample s = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
 #if HAS_SHAPES
     if (attributes_kind(r.attributes) == KIND_SHAPE) {
@@ -231,7 +219,7 @@ GeometrySample primitive_sample_towards(uint primitive, vec3 reference, vec2 u) 
 }
 
 float primitive_pdf_towards(uint primitive, vec3 reference, vec3 position, vec3 normal) {
-    Triangle r = primitive_at(primitive);
+    Triangle r = primitives[primitive];
     float pdf = 0.0;
 #if HAS_SHAPES
     if (attributes_kind(r.attributes) == KIND_SHAPE) {
@@ -249,7 +237,7 @@ float primitive_pdf_towards(uint primitive, vec3 reference, vec3 position, vec3 
 
 // For a shape under a map that is no similarity the mean of the area factor over 8 x 8 points: no closed form.
 float primitive_area(uint primitive) {
-    Triangle r = primitive_at(primitive);
+    Triangle r = primitives[primitive];
     float area = 0.0;
 #if HAS_SHAPES
     if (attributes_kind(r.attributes) == KIND_SHAPE) {
@@ -269,7 +257,7 @@ float primitive_area(uint primitive) {
 }
 
 void primitive_bounds(uint primitive, out vec3 lo, out vec3 hi) {
-    Triangle r = primitive_at(primitive);
+    Triangle r = primitives[primitive];
     lo = vec3(INFINITY), hi = vec3(-INFINITY);
 #if HAS_SHAPES
     if (attributes_kind(r.attributes) == KIND_SHAPE) {
@@ -290,7 +278,7 @@ void primitive_bounds(uint primitive, out vec3 lo, out vec3 hi) {
 // Texture coordinates of a point on the primitive.
 void primitive_uv(uint primitive, vec3 position, out vec2 uv0, out vec2 uv1) {
     uv0 = vec2(0), uv1 = vec2(0);
-    Triangle r = primitive_at(primitive);
+    Triangle r = primitives[primitive];
 #if HAS_SHAPES
     if (attributes_kind(r.attributes) == KIND_SHAPE) {
         // A short ray through the point along each axis; the one that meets the surface nearest to it tells.
@@ -319,8 +307,8 @@ void primitive_uv(uint primitive, vec3 position, out vec2 uv0, out vec2 uv1) {
         float inverse = 1.0 / dot(n, n);
         float b1 = dot(cross(d, e2), n) * inverse, b2 = dot(cross(e1, d), n) * inverse;
         vec3 weights = vec3(1.0 - b1 - b2, b1, b2);
-        uvec3 indices = triangle_indices_at(attributes_index(r.attributes));
-        Vertex a = vertex_at(indices.x), b = vertex_at(indices.y), c = vertex_at(indices.z);
+        uvec3 indices = triangle_indices[attributes_index(r.attributes)];
+        Vertex a = vertices[indices.x], b = vertices[indices.y], c = vertices[indices.z];
         uv0 = mat3x2(a.uv0, b.uv0, c.uv0) * weights;
         uv1 = mat3x2(a.uv1, b.uv1, c.uv1) * weights;
     }

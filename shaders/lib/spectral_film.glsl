@@ -5,19 +5,18 @@
 #endif
 
 #if SPECTRAL_BINS > 0
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SpectralFilmAt { vec2 entries[]; };  // sum, compensation
-layout(scalar, set = 0) readonly buffer SpectralFilmAddress { uvec2 spectral_film_address; };
+layout(scalar, set = 0) buffer SpectralFilm { vec2 spectral_film[]; };  // sum, compensation
 
 void add_to_bins(uint pixel, Spectrum radiance) {
     Wavelengths w = wavelengths[batch_pass];
     for (uint lane = 0u; lane < 4u; ++lane) {
         uint bin = min(uint((w.nm[lane] - 360.0) * (float(SPECTRAL_BINS) / 470.0)), uint(SPECTRAL_BINS - 1));
         uint place = pixel * uint(SPECTRAL_BINS) + bin;
-        vec2 entry = SpectralFilmAt(spectral_film_address).entries[place];
+        vec2 entry = spectral_film[place];
         float value = radiance[lane] * w.share[lane] * (float(SPECTRAL_BINS) / 470.0);
         precise float total = entry.x + value;
         precise float lost = abs(entry.x) >= abs(value) ? (entry.x - total) + value : (value - total) + entry.x;
-        SpectralFilmAt(spectral_film_address).entries[place] = vec2(total, entry.y + lost);
+        spectral_film[place] = vec2(total, entry.y + lost);
     }
 }
 #endif

@@ -34,14 +34,7 @@ const uint WRAP_MIRROR = 2u;
 #define HAS_TEXTURE_FORMAT(format) (((TEXTURE_FORMATS >> format) & 1u) != 0u)
 
 layout(scalar, set = 0) readonly buffer Textures { Texture texture_records[]; };
-#include "lib/large_arrays.glsl"
-#if TEXELS_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TexelsAt { uint entries[]; };
-#define texel_at(i) TexelsAt(texels_address).entries[i]
-#else
 layout(scalar, set = 0) readonly buffer Texels { uint texels[]; };
-#define texel_at(i) texels[i]
-#endif
 
 // sRGB to linear (IEC 61966-2-1): t^2.4 as t² t^0.4, the latter a polynomial in the fourth root of t. Relative error
 // 2e-6 for the 256 values that occur; drivers' pow is worse and dearer.
@@ -57,11 +50,11 @@ vec4 texel_value(Texture t, uint x, uint y) {
     uint texel = y * t.width + x;
     if (HAS_TEXTURE_FORMAT(TEXTURE_FLOAT) && format == TEXTURE_FLOAT) {
         uint at = t.first + 4u * texel;
-        return uintBitsToFloat(uvec4(texel_at(at), texel_at(at + 1u), texel_at(at + 2u), texel_at(at + 3u)));
+        return uintBitsToFloat(uvec4(texels[at], texels[at + 1u], texels[at + 2u], texels[at + 3u]));
     }
     vec4 value = vec4(1);
     if (HAS_TEXTURE_FORMAT(TEXTURE_DATA8) || HAS_TEXTURE_FORMAT(TEXTURE_SRGB8))
-        value = unpackUnorm4x8(texel_at(t.first + texel));
+        value = unpackUnorm4x8(texels[t.first + texel]);
     if (HAS_TEXTURE_FORMAT(TEXTURE_SRGB8) && format == TEXTURE_SRGB8) value.rgb = linear_from_srgb(value.rgb);
     return value;
 }

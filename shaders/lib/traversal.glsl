@@ -78,7 +78,7 @@ void traversal_begin(out Traversal w, vec3 origin, vec3 direction, float t_max) 
     w.after = Hit(0.0, vec2(0), NO_RECORD, NO_RECORD);
 #endif
     traversal_enter(w, WORLD_HEADER, origin, direction);
-    w.node = node_at(WORLD_HEADER).w;
+    w.node = nodes[WORLD_HEADER].w;
     traversal_stack[0] = BVH_NOTHING;
     w.height = 1u;
 #if HAS_INSTANCES
@@ -110,7 +110,7 @@ void traversal_step(inout Traversal w, const bool any_hit) {
         uint popped = traversal_stack[w.height - 1u];
         w.node = last ? popped : w.node + 1u - BVH_COUNT_ONE;
         w.height = last ? w.height - 1u : w.height;
-        Triangle primitive = primitive_at(index);
+        Triangle primitive = primitives[index];
         GeometryHit found;
         bool met = false;
 #if HAS_TRIANGLES
@@ -153,7 +153,7 @@ void traversal_step(inout Traversal w, const bool any_hit) {
             traversal_stack[w.height++] = BVH_RETURN;
             traversal_enter(w, header, m * vec4(w.world_origin, 1.0), m * vec4(w.world_direction, 0.0));
             w.instance = index;
-            w.node = node_at(header).w;
+            w.node = nodes[header].w;
         }
 #endif
     }

@@ -105,7 +105,7 @@ void area_bounds(AreaLight r, out vec3 lo, out vec3 hi) { primitive_bounds(r.pri
 
 LightCone area_cone(AreaLight r) {
     LightCone cone = whole_sphere_cone();
-    bool planar = attributes_kind(primitive_at(r.primitive).attributes) == KIND_TRIANGLE;
+    bool planar = attributes_kind(primitives[r.primitive].attributes) == KIND_TRIANGLE;
     if (planar && !material_emits_both_sides(r.material)) {
         cone.axis = primitive_sample_towards(r.primitive, vec3(0), vec2(0.5)).normal;
         cone.cos_normals = 1.0;

@@ -28,14 +28,7 @@ struct ImageEnvironment {
 };
 
 // How texels are fetched may be set before this file is included.
-#include "lib/large_arrays.glsl"
-#if ENVIRONMENT_TEXELS_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer EnvironmentTexelsAt { uvec4 entries[]; };
-#define environment_texel_at(i) EnvironmentTexelsAt(environment_texels_address).entries[i]
-#else
 layout(scalar, set = 0) readonly buffer EnvironmentTexels { uvec4 environment_texels[]; };  // floats, as bits
-#define environment_texel_at(i) environment_texels[i]
-#endif
 
 // A place between four texel centres.
 struct EnvironmentCell {
@@ -46,10 +39,10 @@ struct EnvironmentCell {
 void environment_corners(EnvironmentMapRef map, EnvironmentCell cell, out vec3 corners[4]) {
     uint right = cell.column + 1u < map.width ? cell.column + 1u : 0u;
     uint top = map.first + cell.row * map.width, bottom = top + map.width;
-    corners[0] = uintBitsToFloat(environment_texel_at(top + cell.column).xyz);
-    corners[1] = uintBitsToFloat(environment_texel_at(top + right).xyz);
-    corners[2] = uintBitsToFloat(environment_texel_at(bottom + cell.column).xyz);
-    corners[3] = uintBitsToFloat(environment_texel_at(bottom + right).xyz);
+    corners[0] = uintBitsToFloat(environment_texels[top + cell.column].xyz);
+    corners[1] = uintBitsToFloat(environment_texels[top + right].xyz);
+    corners[2] = uintBitsToFloat(environment_texels[bottom + cell.column].xyz);
+    corners[3] = uintBitsToFloat(environment_texels[bottom + right].xyz);
 }
 
 vec3 environment_mix(vec3 corners[4], vec2 at) {
@@ -57,7 +50,7 @@ vec3 environment_mix(vec3 corners[4], vec2 at) {
 }
 
 uvec4 environment_row(EnvironmentMapRef map, uint row) {
-    return environment_texel_at(map.first + (map.height + 2u) * map.width + row);
+    return environment_texels[map.first + (map.height + 2u) * map.width + row];
 }
 
 // Direction to cell, accurate next to the poles: everything is measured from the nearer one.
@@ -107,7 +100,7 @@ LightSample image_sample_towards(ImageEnvironment r, vec3 point, vec2 u) {
     vec2 v = min(u * count - cell + low * count, vec2(1.0 - EPSILON));
     uvec4 row_entry = environment_row(map, uint(cell.y));
     uint row = choose_alias(uint(cell.y), row_entry.y, uintBitsToFloat(row_entry.x), v.y);
-    uint entry = environment_texel_at(map.first + row * map.width + uint(cell.x)).w;
+    uint entry = environment_texels[map.first + row * map.width + uint(cell.x)].w;
     float threshold = float(entry >> map.alias_bits) / float((0xFFFFFFFFu >> map.alias_bits) + 1u);
     uint column = choose_alias(uint(cell.x), entry & ((1u << map.alias_bits) - 1u), threshold, v.x);
 

@@ -10,8 +10,8 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     if (end.y == 0u) return no_shadow_ray();
     uint index = end.x;
     for (uint steps = min(uint(u.y * float(end.y)), end.y - 1u); steps > 0u; --steps)
-        index = light_vertex_at(index).previous & ~LIGHT_VERTEX_FLAGS;
-    LightVertex y = light_vertex_at(index);
+        index = light_vertices[index].previous & ~LIGHT_VERTEX_FLAGS;
+    LightVertex y = light_vertices[index];
 
     vec3 d = y.position - p.position;
     float distance_squared = dot(d, d);

@@ -29,7 +29,7 @@ void merge_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMi
     uint index;
     vec3 position;
     while (next_candidate(query, index, position)) {
-        LightVertex y = light_vertex_at(index);
+        LightVertex y = light_vertices[index];
         vec3 light_direction = decode_octahedral(y.direction);
         vec3 d = y.position - p.position;
         float cosine = in_volume(s) ? 1.0 : dot(light_direction, s.normal);

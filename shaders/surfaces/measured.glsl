@@ -38,12 +38,8 @@ struct Measured {
 #endif
 
 layout(scalar, set = 0) readonly buffer MeasuredColors { float measured_colors[]; };
-#if SPECTRAL && MEASURED_SPECTRA_BY_ADDRESS
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MeasuredSpectraAt { float entries[]; };
-#define measured_spectrum_at(i) MeasuredSpectraAt(measured_spectra_address).entries[i]
-#elif SPECTRAL
+#if SPECTRAL
 layout(scalar, set = 0) readonly buffer MeasuredSpectra { float measured_spectra[]; };
-#define measured_spectrum_at(i) measured_spectra[i]
 #endif
 
 bool measured_has(Measured r, uint bit) { return (r.file.kind & bit) != 0u; }
@@ -94,10 +90,10 @@ Spectrum measured_spectrum(MeasuredRef r, MeasuredSlices s, vec2 place) {
         if (r.channels > 0u) {
             uint first = r.spectra + point * r.channels;
             uvec4 a = first + below, b = first + above;
-            value += weight * mix(vec4(measured_spectrum_at(a.x), measured_spectrum_at(a.y), measured_spectrum_at(a.z),
-                                       measured_spectrum_at(a.w)),
-                                  vec4(measured_spectrum_at(b.x), measured_spectrum_at(b.y), measured_spectrum_at(b.z),
-                                       measured_spectrum_at(b.w)), between);
+            value += weight * mix(vec4(measured_spectra[a.x], measured_spectra[a.y], measured_spectra[a.z],
+                                       measured_spectra[a.w]),
+                                  vec4(measured_spectra[b.x], measured_spectra[b.y], measured_spectra[b.z],
+                                       measured_spectra[b.w]), between);
             continue;
         }
 #endif

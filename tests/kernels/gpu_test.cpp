@@ -2,6 +2,7 @@
 #include <numeric>
 
 #include "host/error.h"
+#include "host/gpu/buffer_addresses.h"
 #include "tests/support/device_fixture.h"
 
 using namespace etendue;
@@ -52,6 +53,38 @@ TEST_CASE("a kernel reads buffers and push constants and writes its results") {
     const auto result = out.read_array<float>(1000);
     for (int i = 0; i < 1000; ++i) REQUIRE(result[i] == 3.0f * float(i));
     CHECK(timings.at("scale_input").dispatches == 1);
+}
+
+TEST_CASE(
+    "arrays are read and written through addresses, beyond the size of a binding; other blocks stay bound") {
+    Device& device = test_device();
+    const uint64_t words = device.description.max_buffer_range / 4 + 1000;
+    Buffer large(device, 4 * words, "large");
+    const uint32_t mark = 7;
+    large.write(&mark, 4, 4 * (words - 1));
+    Buffer fixed = create_buffer(device, std::vector<uint32_t>{uint32_t(words - 1), 0}, "fixed");
+    const char* text = R"(
+        layout(local_size_x = 1) in;
+        layout(scalar, set = 0) buffer Large { uint values[]; };
+        layout(scalar, set = 0) buffer Fixed { uint last, result; };
+        void main() {
+            result = values[last];
+            values[last] = 8u;
+            atomicAdd(values[last - 1u], 3u);
+        }
+    )";
+    const Kernel kernel = make_test_kernel("touch_end", text, {{"Large", &large}, {"Fixed", &fixed}});
+    large.write(&mark, 4, 4 * (words - 2));
+    CommandList list(device);
+    list.dispatch(kernel, 1);
+    list.run();
+    CHECK(fixed.read_array<uint32_t>(2)[1] == 7);
+    CHECK(large.read_array<uint32_t>(2, words - 2) == std::vector<uint32_t>{10, 8});
+
+    ShaderSources sources;
+    sources.generated["touch_end"] = text;
+    const AddressedShader changed = use_addresses(compile_shader(sources, "touch_end").spirv);
+    CHECK(changed.blocks == std::vector<std::string>{"Large"});
 }
 
 TEST_CASE("a buffer that the host does not bind is named") {

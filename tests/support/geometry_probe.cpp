@@ -22,7 +22,7 @@ const char* const trace_kernel = R"(
     layout(push_constant) uniform Push { uint count, world_primitives, brute_force; };
 
     void meet(uint i, uint instance, vec3 origin, vec3 direction, inout Hit best) {
-        Triangle r = primitive_at(i);
+        Triangle r = primitives[i];
         GeometryHit hit;
         bool met = false;
         if (attributes_kind(r.attributes) == KIND_TRIANGLE) met = triangle_intersect(r, origin, direction, best.t, hit);
@@ -38,7 +38,7 @@ const char* const trace_kernel = R"(
     Hit try_all(vec3 origin, vec3 direction, float t_max) {
         Hit best = Hit(t_max, vec2(0), NO_RECORD, NO_RECORD);
         for (uint i = 0u; i < world_primitives; i++) {
-            Triangle r = primitive_at(i);
+            Triangle r = primitives[i];
             if (attributes_kind(r.attributes) != KIND_INSTANCE) {
                 meet(i, NO_RECORD, origin, direction, best);
                 continue;

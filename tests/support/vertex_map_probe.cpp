@@ -52,8 +52,8 @@ const char* const query_text = R"(
             begin_query(q, points[i].position, points[i].radius);
             while (next_candidate(q, vertex, position)) {
                 if (number < room) {
-                    bool same = position == light_vertex_at(vertex).position;
-                    found[row + 1u + number] = same ? light_vertex_at(vertex).instance : 0xFFFFFFFFu;
+                    bool same = position == light_vertices[vertex].position;
+                    found[row + 1u + number] = same ? light_vertices[vertex].instance : 0xFFFFFFFFu;
                 }
                 number++;
                 found[row] = number;
@@ -75,7 +75,7 @@ const char* const merge_text = R"(
             vec3 position, sum = vec3(0), normal = vec3(0, 0, 1);
             begin_query(q, points[i].position, points[i].radius);
             while (next_candidate(q, vertex, position)) {
-                LightVertex v = light_vertex_at(vertex);
+                LightVertex v = light_vertices[vertex];
                 float cosine = dot(decode_octahedral(v.direction), normal);
                 float pdf = max(cosine, 0.0) * INV_PI;
                 bool same = dot(decode_octahedral_16(v.normal), normal) > -2.0;
@@ -91,24 +91,18 @@ const char* const merge_text = R"(
 
 }  // namespace
 
-VertexMapProbe::VertexMapProbe(Device& device, uint32_t capacity, uint64_t binding_bytes)
-    : map(
-          device, capacity, VertexMap::vertex_bytes({}),
-          [&](const std::string& file, const BufferTable& buffers, const std::string& defines) {
-              CompileOptions options;
-              options.defines = defines;
-              return Kernel(device, compile_shader(sources(), file, options), buffers);
-          },
-          binding_bytes),
+VertexMapProbe::VertexMapProbe(Device& device, uint32_t capacity)
+    : map(device, capacity, VertexMap::vertex_bytes({}),
+          [&](const std::string& file, const BufferTable& buffers) {
+              return Kernel(device, compile_shader(sources(), file), buffers);
+          }),
       device_(device) {}
 
 Kernel VertexMapProbe::kernel(const std::string& name, const std::string& text, BufferTable buffers) {
     ShaderSources all = sources();
     all.generated[name] = points_text + text;
-    CompileOptions options;
-    options.defines = map.defines();
     buffers.merge(map.buffers());
-    return Kernel(device_, compile_shader(all, name, options), buffers);
+    return Kernel(device_, compile_shader(all, name), buffers);
 }
 
 void VertexMapProbe::store(const std::vector<GridPoint>& points, uint32_t groups, uint32_t expected,

@@ -28,7 +28,7 @@ struct GridPoint {
 
 class VertexMapProbe {
   public:
-    VertexMapProbe(Device& device, uint32_t capacity, uint64_t binding_bytes = 0);
+    VertexMapProbe(Device& device, uint32_t capacity);
 
     // Clears the map, stores the points, some lanes several in turn, and builds the grid.
     void store(const std::vector<GridPoint>& points, uint32_t groups, uint32_t expected,
