@@ -555,6 +555,40 @@ def finishes():
     return s
 
 
+def films():
+    s = Gltf(
+        "films",
+        "Colours of thin films, in wavelengths, before a bright surround. Above, chromium under an oxide of index 2.2 and 20, 40,"
+        " 60, 90 and 130 nm: straw, brown, blue, pale blue and yellow, as metals take them on when they are heated. Below, from the"
+        " left: soap films of 100, 300 and 500 nm around air, coloured in their rims; black plastic with glTF's"
+        " iridescence of 400 nm; glass with a film of index 1.22 and 112 nm, which mirrors less than bare glass.",
+    )
+    s.environment = {"class": "constant", "radiance": 0.25}
+    floor = s.surface("floor", "lambertian", reflectance=0.12)
+    backdrop(s, floor, 20, 8, -4.5, 7, 2, steps=40)
+    lamp = s.emitter("lamp", 5)
+    s.shape("lamp", "rectangle", lamp, matrix=facing([-3, 5, 3], [0.5, -1, -0.5]), size=[5, 3])
+    s.shape("strip", "rectangle", lamp, matrix=facing([5.5, 2.5, 3], [-1, -0.3, -0.6]), size=[1.5, 4])
+    s.medium("glass", ior=1.5)
+    chromium = {"eta": {"name": "Cr eta"}, "k": {"name": "Cr k"}}
+    rows = (
+        [
+            s.surface(f"oxide of {d} nm", "thin_film", ior=2.2, thickness=d, alpha=0.1, **chromium)
+            for d in (20, 40, 60, 90, 130)
+        ],
+        [s.surface(f"soap of {d} nm", "thin_film", ior=1.33, thickness=d) for d in (100, 300, 500)]
+        + [
+            s.principled("iridescent plastic", [0.02, 0.02, 0.02], 0, 0.2, iridescence={"iridescenceFactor": 1}),
+            s.surface("coated glass", "thin_film", inside="glass", ior=1.22, thickness=112),
+        ],
+    )
+    for row, kinds in enumerate(rows):
+        for i, kind in enumerate(kinds):
+            s.shape(s.materials[kind]["name"], "sphere", kind, [1.15 * (i - 2), 0.5, -0.35 + 1.5 * row], radius=0.46)
+    s.camera([0, 4.2, 9.0], [0, 0.28, 0.3], 23, 1.8)
+    return s
+
+
 def many_lights():
     s = Gltf("many_lights", "")
     floor = s.surface("floor", "lambertian", reflectance=[0.62, 0.60, 0.57])
@@ -709,6 +743,7 @@ SCENES = [
     lamps,
     materials,
     finishes,
+    films,
     many_lights,
     furnace_smooth,
     furnace_rough,
