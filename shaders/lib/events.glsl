@@ -98,16 +98,16 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
 }
 
 // Russian roulette on what the path still carries. Radiance that has entered a dense medium is scaled by 1 / ior² until it
-// leaves, which is no reason to end the path. Within media that absorb little, light scatters thousands of times before it comes out:
-// there nothing but absorption ends paths.
-bool survive_roulette(inout Path path, bool in_volume) {
+// leaves, which is no reason to end the path. Long paths that keep all they carry end at reflections only (`passes`: the event was
+// none): within media that absorb little, light scatters thousands of times before it comes out, and glass may have as many faces.
+bool survive_roulette(inout Path path, bool passes) {
     if (path.depth < 3u) return true;
     float carried = max_component(path.throughput);
 #if HAS_INTERFACES && !FORWARD
     float ior = medium_ior(path.medium);
     carried *= ior * ior;
 #endif
-    float q = min(carried, path.depth < 64u || in_volume ? 1.0 : 0.95);
+    float q = min(carried, path.depth < 64u || passes ? 1.0 : 0.95);
     if (q >= 1.0) return true;
     if (sample_1d(path.random) >= q) return false;
     path.throughput *= 1.0 / q;
@@ -115,9 +115,9 @@ bool survive_roulette(inout Path path, bool in_volume) {
 }
 
 // After an event: does the path live on?
-bool continue_path(inout Path path, bool in_volume, inout Counters counters) {
+bool continue_path(inout Path path, uint event, inout Counters counters) {
     float carried = luminance(path.throughput);
-    bool survives = survive_roulette(path, in_volume);
+    bool survives = survive_roulette(path, (event & EVENT_TRANSMIT) != 0u);
 #if FORWARD
     counters.roulette += carried - (survives ? luminance(path.throughput) : 0.0);
 #endif

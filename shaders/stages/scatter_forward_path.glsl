@@ -86,5 +86,5 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
         return false;
     }
     counters.absorbed += carried - luminance(path.throughput);
-    return continue_path(path, scatters, counters);
+    return continue_path(path, event.next.event, counters);
 }

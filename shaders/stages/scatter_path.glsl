@@ -167,5 +167,5 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     if ((event.next.event & EVENT_STRAIGHT) == 0u) path.flags &= ~PATH_STARTS;
 #endif
     if (!follow_sample(path, p, s, event, mis)) return false;
-    return continue_path(path, scatters, counters);
+    return continue_path(path, event.next.event, counters);
 }
