@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -183,11 +184,15 @@ class Directions {
 // How far a direction may be from the one that stands for it, as sines: well inside the margins below.
 constexpr double plane_tolerance = 2e-7, side_tolerance = 1e-6;
 
+// By so much of the greatest coordinate patches with sides are widened, so that rays from anywhere find no
+// crack; and sides must be so long that this is less than 1e-4 of them.
+constexpr double margin_part = 2e-6, least_side = 1e4 * margin_part;
+
 // Writes the tests. Each leaves `t` and whether it is met in `met`.
 class Writer {
   public:
     Writer(const std::vector<Patch>& patches, double reach)
-        : patches_(patches), margin_(2e-6 * reach), reach_(reach) {
+        : patches_(patches), margin_(margin_part * reach), reach_(reach) {
         for (const Patch& patch : patches_)
             if (patch.kind != Patch::Kind::sphere)
                 directions_.add(glm::cross(patch.e1, patch.e2), plane_tolerance);
@@ -315,6 +320,12 @@ void append_entries(const Patch& patch, std::vector<glm::uvec4>& nodes) {
     }
 }
 
+double shortest_side(const Patch& patch) {
+    const bool has_sides = patch.kind == Patch::Kind::parallelogram || patch.kind == Patch::Kind::triangle;
+    return has_sides ? std::min(glm::length(patch.e1), glm::length(patch.e2))
+                     : std::numeric_limits<double>::infinity();
+}
+
 std::vector<Patch> find_patches(const World& world, const SceneDescription& scene, bool& possible) {
     std::vector<Patch> triangles, patches;
     double size = 0;
@@ -358,7 +369,10 @@ UnrolledTraversal unroll_traversal(World& world, const SceneDescription& scene, 
     if (!possible || patches.size() > max_tests) return result;
 
     const glm::vec3 far_corner = glm::max(glm::abs(world.bounds.lo), glm::abs(world.bounds.hi));
-    Writer writer(patches, std::max({far_corner.x, far_corner.y, far_corner.z}));
+    const double reach = std::max({far_corner.x, far_corner.y, far_corner.z});
+    for (const Patch& patch : patches)
+        if (shortest_side(patch) < least_side * reach) return result;
+    Writer writer(patches, reach);
     const auto first = static_cast<uint32_t>(world.nodes.size());
     std::string nearest, any;
     bool spheres = false;
