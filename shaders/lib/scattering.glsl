@@ -68,7 +68,8 @@ bool is_consistent(ScatteringPoint s, vec3 direction) {
 // … and the frame that s now has, in which the direction is `local`?
 bool is_on_one_side(ScatteringPoint s, vec3 direction, vec3 local) { return in_volume(s) || local.z * dot(direction, s.normal) > 0.0; }
 
-// `direction` is that of the ray that hit p, `medium` the one it came through; of a body with a priority the one around it. The frame is that of the shading normal.
+// `direction` is that of the ray that hit p, `medium` the one it came through; of a body with a priority the one around it. The
+// frame is that of the shading normal.
 ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool importance) {
     Material m = materials[p.material];
     ScatteringPoint s;
