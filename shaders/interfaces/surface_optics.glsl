@@ -118,21 +118,7 @@ SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 u)
     return result;
 }
 
-BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) {
-    SurfaceEvent result = SurfaceEvent(no_surface_pair(), no_bsdf_sample(), 0.0);
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name)                                              \
-    case tag: {                                                             \
-        Struct r = name##_resolve(name##_record(record_index(ref)), c);     \
-        result.next = name##_sample(r, c, wo, u);                           \
-        complete(result, name##_evaluate(r, c, wo, result.next.wi));        \
-        break;                                                              \
-    }
-        SURFACE_CLASSES(CASE)
-#undef CASE
-    }
-    return result.next;
-}
+BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) { return surface_event(ref, c, wo, wo, u).next; }
 
 Spectrum surface_transparency(uint ref, SurfaceContext c, vec3 wo) {
     Spectrum result = Spectrum(0);
