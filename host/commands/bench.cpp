@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double reference_times = 4;  // a self-made reference takes that many times an algorithm's time
+constexpr double other_unit = 2;       // a mean that many times the reference's, or its inverse, is suspect
 
 // The name of a scene in files and tables: its file's, or its folder's where the file is only called "scene".
 std::string scene_name(const fs::path& file, const std::vector<BenchScene>& others) {
@@ -130,6 +131,16 @@ void bench_scene(const BenchOptions& options, BenchResults& results, Progress& p
                             results.points.push_back(std::move(point));
                             write_results(folder, results);
                         });
+    for (const BenchCurve& curve : curves(results, scene)) {
+        const double factor = 1 + curve.bias.value;
+        if (factor <= other_unit && factor >= 1 / other_unit) continue;
+        results.scenes.back().notes.push_back(
+            fmt::format("warning: {}: the mean is {:.3g} times the reference's: is that in another unit than "
+                        "this renderer's, where white of 1 cd/m² is 1?",
+                        curve.algorithm, factor));
+        show_note(progress, results.scenes.back().notes.back());
+        write_results(folder, results);
+    }
 
     // All pictures of a scene are as bright as its reference: of a mean that shows.
     const auto values = plane(reference->image, size_t(picture_channels(reference->image)[1]));

@@ -77,10 +77,12 @@ void write_photometry(Imf::Header& header, const Image& image) {
     Imf::addWhiteLuminance(header, 1);
 }
 
+// Those that are not the format's own.
 std::map<std::string, Attribute> read_attributes(const Imf::Header& header) {
     std::map<std::string, Attribute> attributes;
+    const Imf::Header own;
     for (auto i = header.begin(); i != header.end(); ++i) {
-        if (std::string_view(i.name()) == "whiteLuminance") continue;  // write_photometry
+        if (own.find(i.name()) != own.end() || std::string_view(i.name()) == "whiteLuminance") continue;
         const Imf::Attribute& attribute = i.attribute();
         if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&attribute))
             attributes[i.name()] = text->value();

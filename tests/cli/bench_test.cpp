@@ -75,6 +75,23 @@ TEST_CASE("a bench leaves points, a page and images, and can draw its page again
     CHECK(read_text(program.folder / "out/index.html").find("<svg") == std::string::npos);
 }
 
+TEST_CASE("a reference in another unit is noticed") {
+    Program program;
+    write_text(program.folder / "s.gltf", small_scene());
+    REQUIRE(
+        program.run({"render", "s.gltf", "-o", "r.exr", "--size", "16x8", "--passes", "256", "-q"}).code ==
+        0);
+    for (const float scale : {1.0f, 1 / 683.0f}) {
+        Image reference = read_exr(program.folder / "r.exr");
+        for (float& value : reference.values) value *= scale;
+        write_exr(program.folder / "r.exr", reference);
+        const Run run = program.run(with({"--reference", "r.exr", "--algorithms", "backward"}));
+        CAPTURE(run.err);
+        CHECK(run.code == 0);
+        CHECK((run.err.find("another unit") != std::string::npos) == (scale != 1));
+    }
+}
+
 TEST_CASE("a bench writes nothing over, and bad input is one line") {
     Program program;
     write_text(program.folder / "s.gltf", small_scene());
