@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "host/error.h"
+#include "host/gpu/kernel.h"
 
 namespace etendue {
 namespace {
@@ -263,7 +264,10 @@ std::unique_ptr<Device> create_device(const DeviceOptions& given) {
     return device;
 }
 
+Device::Device() : programs(std::make_unique<ProgramStore>()) {}
+
 Device::~Device() {
+    programs.reset();
     if (print_validation)
         for (const std::string& message : validation_messages)
             fmt::print(stderr, "validation: {}\n", message);

@@ -9,6 +9,8 @@
 
 namespace etendue {
 
+class ProgramStore;
+
 // What `etendue devices` prints of one physical device.
 struct DeviceDescription {
     uint32_t index = 0;
@@ -44,8 +46,9 @@ struct Device {
     uint64_t bytes_allocated = 0, peak_bytes_allocated = 0;
     std::vector<std::string> validation_messages;
     bool print_validation = false;
+    std::unique_ptr<ProgramStore> programs;  // compiled for the device
 
-    Device() = default;
+    Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
     ~Device();

@@ -12,37 +12,26 @@ namespace etendue {
 namespace {
 
 constexpr uint32_t max_timed_dispatches = 1024;  // a command list; later ones run untimed
+constexpr size_t most_programs = 128;            // kept in a store, beside those in use
 
 }  // namespace
 
-Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& buffers)
-    : device_(&device), name_(shader.name), layout_(reflect_shader(shader.spirv)) {
+Program::Program(Device& device, const CompiledShader& shader)
+    : device_(device),
+      name_(shader.name),
+      layout_(reflect_shader(shader.spirv)),
+      spirv_bytes_(shader.spirv.size() * 4) {
     const AddressedShader addressed = use_addresses(shader.spirv);
-    std::vector<uint64_t> addresses(addressed.blocks.size());
-    std::map<uint32_t, const Buffer*> bound;  // several blocks may be views of one binding
-    for (const BlockLayout& block : layout_.blocks) {
-        const auto found = buffers.find(block.name);
-        if (found == buffers.end())
-            fail_device("kernel {} reads buffer {}, which the host does not bind", name_, block.name);
-        const auto place = std::find(addressed.blocks.begin(), addressed.blocks.end(), block.block_name);
-        if (place != addressed.blocks.end()) {
-            addresses[size_t(place - addressed.blocks.begin())] = found->second->address();
-            continue;
-        }
-        if (found->second->bytes() > device.description.max_buffer_range)
-            fail_device("{} needs {:.0f} MiB in one binding; this device allows {:.0f} MiB", block.name,
-                        double(found->second->bytes()) / 1048576.0,
-                        double(device.description.max_buffer_range) / 1048576.0);
-        bound[block.binding] = found->second;
-    }
-
-    if (!addresses.empty()) {
-        addresses_ = create_buffer(device, std::span<const uint64_t>(addresses), name_ + " addresses");
-        bound[addressed.binding] = &addresses_;
-    }
-
+    addressed_blocks_ = addressed.blocks;
+    address_binding_ = addressed.binding;
+    std::set<uint32_t> bound;  // several blocks may be views of one binding
+    for (const BlockLayout& block : layout_.blocks)
+        if (std::find(addressed.blocks.begin(), addressed.blocks.end(), block.block_name) ==
+            addressed.blocks.end())
+            bound.insert(block.binding);
+    if (!addressed.blocks.empty()) bound.insert(addressed.binding);
     std::vector<VkDescriptorSetLayoutBinding> bindings;
-    for (const auto& [binding, buffer] : bound)
+    for (const uint32_t binding : bound)
         bindings.push_back(
             {binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
@@ -76,6 +65,58 @@ Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& 
     vkDestroyShaderModule(device.handle, module, nullptr);
     check(made, "vkCreateComputePipelines");
     set_debug_name(device, VK_OBJECT_TYPE_PIPELINE, uint64_t(pipeline_), name_);
+}
+
+Program::~Program() {
+    vkDestroyPipeline(device_.handle, pipeline_, nullptr);
+    vkDestroyPipelineLayout(device_.handle, pipeline_layout_, nullptr);
+    vkDestroyDescriptorSetLayout(device_.handle, set_layout_, nullptr);
+}
+
+std::shared_ptr<const Program> ProgramStore::find(uint64_t key) {
+    const auto found = programs_.find(key);
+    if (found == programs_.end()) return nullptr;
+    found->second.last_use = ++uses_;
+    return found->second.program;
+}
+
+void ProgramStore::add(uint64_t key, std::shared_ptr<const Program> program) {
+    programs_[key] = {std::move(program), ++uses_};
+    while (programs_.size() > most_programs) {
+        auto oldest = programs_.end();
+        for (auto i = programs_.begin(); i != programs_.end(); ++i)
+            if (i->second.program.use_count() == 1 &&
+                (oldest == programs_.end() || i->second.last_use < oldest->second.last_use))
+                oldest = i;
+        if (oldest == programs_.end()) return;
+        programs_.erase(oldest);
+    }
+}
+
+Kernel::Kernel(Device& device, std::shared_ptr<const Program> program, const BufferTable& buffers)
+    : device_(&device), program_(std::move(program)) {
+    const std::vector<std::string>& addressed = program_->addressed_blocks_;
+    std::vector<uint64_t> addresses(addressed.size());
+    std::map<uint32_t, const Buffer*> bound;
+    for (const BlockLayout& block : layout().blocks) {
+        const auto found = buffers.find(block.name);
+        if (found == buffers.end())
+            fail_device("kernel {} reads buffer {}, which the host does not bind", name(), block.name);
+        const auto place = std::find(addressed.begin(), addressed.end(), block.block_name);
+        if (place != addressed.end()) {
+            addresses[size_t(place - addressed.begin())] = found->second->address();
+            continue;
+        }
+        if (found->second->bytes() > device.description.max_buffer_range)
+            fail_device("{} needs {:.0f} MiB in one binding; this device allows {:.0f} MiB", block.name,
+                        double(found->second->bytes()) / 1048576.0,
+                        double(device.description.max_buffer_range) / 1048576.0);
+        bound[block.binding] = found->second;
+    }
+    if (!addresses.empty()) {
+        addresses_ = create_buffer(device, std::span<const uint64_t>(addresses), name() + " addresses");
+        bound[program_->address_binding_] = &addresses_;
+    }
 
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                     std::max<uint32_t>(1, uint32_t(bound.size()))};
@@ -87,7 +128,7 @@ Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& 
     VkDescriptorSetAllocateInfo set_allocation{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     set_allocation.descriptorPool = pool_;
     set_allocation.descriptorSetCount = 1;
-    set_allocation.pSetLayouts = &set_layout_;
+    set_allocation.pSetLayouts = &program_->set_layout_;
     check(vkAllocateDescriptorSets(device.handle, &set_allocation, &set_), "vkAllocateDescriptorSets");
     for (const auto& [binding, buffer] : bound) {
         const VkDescriptorBufferInfo buffer_info{buffer->handle(), 0, VK_WHOLE_SIZE};
@@ -102,21 +143,13 @@ Kernel::Kernel(Device& device, const CompiledShader& shader, const BufferTable& 
 }
 
 Kernel::~Kernel() {
-    if (!device_) return;
-    vkDestroyDescriptorPool(device_->handle, pool_, nullptr);
-    vkDestroyPipeline(device_->handle, pipeline_, nullptr);
-    vkDestroyPipelineLayout(device_->handle, pipeline_layout_, nullptr);
-    vkDestroyDescriptorSetLayout(device_->handle, set_layout_, nullptr);
+    if (pool_) vkDestroyDescriptorPool(device_->handle, pool_, nullptr);
 }
 
 void Kernel::swap(Kernel& other) noexcept {
     std::swap(device_, other.device_);
-    std::swap(name_, other.name_);
-    std::swap(layout_, other.layout_);
+    std::swap(program_, other.program_);
     std::swap(addresses_, other.addresses_);
-    std::swap(set_layout_, other.set_layout_);
-    std::swap(pipeline_layout_, other.pipeline_layout_);
-    std::swap(pipeline_, other.pipeline_);
     std::swap(pool_, other.pool_);
     std::swap(set_, other.set_);
 }
@@ -160,21 +193,21 @@ void CommandList::stamp(VkPipelineStageFlagBits stage) {
 
 void CommandList::prepare(const Kernel& kernel, const std::vector<PushValue>& values) {
     begin();
-    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline_);
-    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline_layout_, 0, 1,
-                            &kernel.set_, 0, nullptr);
-    if (const uint32_t size = (kernel.layout_.push_constant_size + 3) / 4 * 4) {
+    vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program_->pipeline_);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program_->pipeline_layout_, 0,
+                            1, &kernel.set_, 0, nullptr);
+    if (const uint32_t size = (kernel.layout().push_constant_size + 3) / 4 * 4) {
         std::vector<uint32_t> words(size / 4, 0u);
         for (const PushValue& value : values) {
-            const auto& members = kernel.layout_.push_constants;
+            const auto& members = kernel.layout().push_constants;
             const auto member =
                 std::find_if(members.begin(), members.end(), [&](auto& m) { return m.name == value.name; });
             if (member != members.end()) words[member->offset / 4] = value.bits;
         }
-        vkCmdPushConstants(commands_, kernel.pipeline_layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, size,
+        vkCmdPushConstants(commands_, kernel.program_->pipeline_layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, size,
                            words.data());
     }
-    timed_.push_back(kernel.name_);
+    timed_.push_back(kernel.name());
     stamp(VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT);
 }
 

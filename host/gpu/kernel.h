@@ -3,6 +3,7 @@
 #pragma once
 #include <bit>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,56 @@ struct PushValue {
     uint32_t bits;
 };
 
-// A pipeline bound to its buffers, which must outlive it. Owns its Vulkan objects; movable.
+// A pipeline without its buffers: what kernels of the same code share.
+class Program {
+  public:
+    Program(Device& device, const CompiledShader& shader);
+    Program(const Program&) = delete;
+    ~Program();
+
+    const std::string& name() const { return name_; }
+    const ShaderLayout& layout() const { return layout_; }
+    size_t spirv_bytes() const { return spirv_bytes_; }
+
+  private:
+    friend class Kernel;
+    friend class CommandList;
+    Device& device_;
+    std::string name_;
+    ShaderLayout layout_;
+    size_t spirv_bytes_;
+    std::vector<std::string> addressed_blocks_;  // whose addresses stand in the buffer at address_binding_
+    uint32_t address_binding_ = 0;
+    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
+    VkPipelineLayout pipeline_layout_ = VK_NULL_HANDLE;
+    VkPipeline pipeline_ = VK_NULL_HANDLE;
+};
+
+// The programs of a device by what they were compiled from, so that the same is never compiled twice while
+// somebody may ask for it again. Of programs that no kernel has the oldest go when there are many.
+class ProgramStore {
+  public:
+    std::shared_ptr<const Program> find(uint64_t key);  // null = none
+    void add(uint64_t key, std::shared_ptr<const Program> program);
+
+  private:
+    struct Entry {
+        std::shared_ptr<const Program> program;
+        uint64_t last_use = 0;
+    };
+    std::map<uint64_t, Entry> programs_;
+    uint64_t uses_ = 0;
+};
+
+// A program bound to its buffers, which must outlive it. Owns its Vulkan objects; movable.
 class Kernel {
   public:
     Kernel() = default;
     // Fails with a clear line when `buffers` lacks one that the shader reads, or one is too large for a
     // binding.
-    Kernel(Device& device, const CompiledShader& shader, const BufferTable& buffers);
+    Kernel(Device& device, std::shared_ptr<const Program> program, const BufferTable& buffers);
+    Kernel(Device& device, const CompiledShader& shader, const BufferTable& buffers)
+        : Kernel(device, std::make_shared<const Program>(device, shader), buffers) {}
     Kernel(Kernel&& other) noexcept { swap(other); }
     Kernel& operator=(Kernel&& other) noexcept {
         swap(other);
@@ -37,22 +81,19 @@ class Kernel {
     }
     ~Kernel();
 
-    const std::string& name() const { return name_; }
-    const ShaderLayout& layout() const { return layout_; }
+    explicit operator bool() const { return program_ != nullptr; }
+    const std::string& name() const { return program_->name(); }
+    const ShaderLayout& layout() const { return program_->layout(); }
     uint32_t group_size() const {
-        return layout_.local_size[0] * layout_.local_size[1] * layout_.local_size[2];
+        return layout().local_size[0] * layout().local_size[1] * layout().local_size[2];
     }
 
   private:
     friend class CommandList;
     void swap(Kernel& other) noexcept;
     Device* device_ = nullptr;
-    std::string name_;
-    ShaderLayout layout_;
+    std::shared_ptr<const Program> program_;
     Buffer addresses_;  // of the buffers that are read through them
-    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
-    VkPipelineLayout pipeline_layout_ = VK_NULL_HANDLE;
-    VkPipeline pipeline_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };

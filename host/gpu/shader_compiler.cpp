@@ -65,11 +65,6 @@ std::string first_error(const char* log) {
     return std::string(text);
 }
 
-uint64_t fnv1a(std::string_view text, uint64_t hash = 0xcbf29ce484222325ull) {
-    for (unsigned char c : text) hash = (hash ^ c) * 0x100000001b3ull;
-    return hash;
-}
-
 bool read_spirv(const std::filesystem::path& path, Spirv& spirv) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) return false;
@@ -142,7 +137,7 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
         Includer includer(sources);
         if (!shader.preprocess(limits, 460, ECoreProfile, false, false, messages, &preprocessed, includer))
             fail_input("{}", first_error(shader.getInfoLog()));
-        const uint64_t hash = fnv1a(preprocessed, fnv1a(ETENDUE_VERSION, options.optimize ? 1 : 2));
+        const uint64_t hash = hash_text(preprocessed, hash_text(ETENDUE_VERSION, options.optimize ? 1 : 2));
         cached = options.cache_folder / fmt::format("{}-{:016x}.spv", result.name, hash);
         if (read_spirv(cached, result.spirv)) {
             result.from_cache = true;

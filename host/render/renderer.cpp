@@ -95,6 +95,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       settings_(settings),
       schedule_(settings.schedule),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
+      receiver_moves_(scene.receiver_moves),
       spectra_(device, scene),
       commands_(device) {
     counter_sums_.fill(0);
@@ -115,9 +116,9 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
         spectral_film_.emplace(device, settings.width * settings.height, settings.spectral_bins);
         film.merge(spectral_film_->buffers());
     }
-    start_media_ = find_start_media(device, scene, settings.receiver,
-                                    float(settings.width) / float(settings.height), techniques.forward);
-    film["StartMedia"] = &start_media_;
+    start_media_ = std::make_unique<StartMedia>(device, scene, techniques.forward);
+    start_media_->find(settings.receiver, film_aspect());
+    film["StartMedia"] = &start_media_->buffer();
     film.merge(spectra_.buffers());
     if (techniques.forward) {
         forward_ = std::make_unique<ForwardRays>(device, scene, settings_, techniques, film);
@@ -147,7 +148,13 @@ void Renderer::render_passes(uint32_t count) {
     last_pass_seconds_ = seconds / count;
 }
 
+float Renderer::film_aspect() const { return float(settings_.width) / float(settings_.height); }
+
 void Renderer::restart(uint32_t seed) {
+    if (receiver_moves_ != scene_.receiver_moves) {
+        start_media_->find_of_receiver(settings_.receiver, film_aspect());
+        receiver_moves_ = scene_.receiver_moves;
+    }
     settings_.seed = pipeline_->settings.seed = seed;
     film_->clear();
     if (spectral_film_) spectral_film_->clear();
@@ -194,7 +201,7 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
     const size_t pixels = pixel_count(image), band = std::min<size_t>(pixels, 1 << 20);  // fits in a binding
     const Buffer buffer(device_, band * sizeof(Aov), "Aovs");
     const Kernel kernel = make_color_kernel(device_, scene_, "kernels/trace_aovs.comp",
-                                            {{"Aovs", &buffer}, {"StartMedia", &start_media_}});
+                                            {{"Aovs", &buffer}, {"StartMedia", &start_media_->buffer()}});
     std::vector<Aov> aovs;
     for (size_t first = 0; first < pixels; first += band) {
         const size_t count_here = std::min(band, pixels - first);

@@ -21,6 +21,7 @@
 namespace etendue {
 
 class ForwardRays;
+class StartMedia;
 
 // What --algorithm auto has come to, or what was asked for.
 struct AlgorithmChoice {
@@ -71,6 +72,8 @@ struct FilmState {
 
 Schedule choose_schedule(const Scene& scene);
 
+// Making one compiles only what no renderer on the device has compiled yet: for another size of the image,
+// make another one, with the first one's choice in the settings.
 class Renderer {
   public:
     // Fails with one line where the scene cannot be rendered by that algorithm.
@@ -79,7 +82,8 @@ class Renderer {
     Renderer(const Renderer&) = delete;
 
     void render_passes(uint32_t count);
-    void restart(uint32_t seed);  // an empty film again; kernels and timings stay
+    // An empty film again; kernels and timings stay. What move_receiver has changed is seen from here on.
+    void restart(uint32_t seed);
     // How many passes take about `seconds` by the speed of the last batch; 1 before the first.
     uint32_t passes_in(double seconds) const;
 
@@ -106,6 +110,7 @@ class Renderer {
     struct FusedPipeline;
     struct WavefrontPipeline;
     void read_counters();
+    float film_aspect() const;
     Device& device_;
     Scene& scene_;
     AlgorithmChoice choice_;
@@ -114,7 +119,8 @@ class Renderer {
     std::unique_ptr<Film> film_;
     std::optional<SpectralFilm> spectral_film_;
     Buffer counter_sums_;
-    Buffer start_media_;  // none where the scene has no media
+    std::unique_ptr<StartMedia> start_media_;
+    uint64_t receiver_moves_;  // of the scene, that start_media_ knows of
     SpectralPasses spectra_;
     std::unique_ptr<ForwardRays> forward_;  // null = none
     std::unique_ptr<Pipeline> pipeline_;

@@ -4,23 +4,31 @@
 
 namespace etendue {
 
-Buffer find_start_media(Device& device, Scene& scene, uint32_t receiver, float film_aspect, bool of_lights) {
-    if (!scene.features.interfaces) return {};
-    const uint32_t count = of_lights ? 1 + 2 * uint32_t(scene.lights) : 1;
-    Buffer media(device, uint64_t(count) * (scene.features.body_count > 0 ? 12 : 4), "StartMedia");
-    const Kernel kernel =
-        make_color_kernel(device, scene, "kernels/find_start_media.comp", {{"StartMedia", &media}},
-                          of_lights ? "#define OF_LIGHTS 1\n" : "#define OF_LIGHTS 0\n");
-    CommandList commands(device);
-    for (uint64_t first = 0; first < count; first += uint64_t(max_groups) * kernel.group_size())
-        commands.dispatch(kernel,
-                          std::min((count - uint32_t(first) - 1) / kernel.group_size() + 1, max_groups),
+StartMedia::StartMedia(Device& device, Scene& scene, bool of_lights) : device_(device) {
+    if (!scene.features.interfaces) return;
+    count_ = of_lights ? 1 + 2 * uint32_t(scene.lights) : 1;
+    media_ = Buffer(device, uint64_t(count_) * (scene.features.body_count > 0 ? 12 : 4), "StartMedia");
+    kernel_ = make_color_kernel(device, scene, "kernels/find_start_media.comp", {{"StartMedia", &media_}},
+                                of_lights ? "#define OF_LIGHTS 1\n" : "#define OF_LIGHTS 0\n");
+}
+
+void StartMedia::find(uint32_t receiver, float film_aspect) { ask(count_, receiver, film_aspect); }
+
+void StartMedia::find_of_receiver(uint32_t receiver, float film_aspect) {
+    ask(std::min(count_, 1u), receiver, film_aspect);
+}
+
+void StartMedia::ask(uint32_t count, uint32_t receiver, float film_aspect) {
+    if (count == 0) return;
+    CommandList commands(device_);
+    for (uint64_t first = 0; first < count; first += uint64_t(max_groups) * kernel_.group_size())
+        commands.dispatch(kernel_,
+                          std::min((count - uint32_t(first) - 1) / kernel_.group_size() + 1, max_groups),
                           {{"first", uint32_t(first)},
                            {"count", count},
                            {"receiver", receiver},
                            {"film_aspect", film_aspect}});
     commands.run();
-    return media;
 }
 
 }  // namespace etendue

@@ -5,8 +5,22 @@
 
 namespace etendue {
 
-// RecordRefs: at the receiver, for an image of that aspect ratio (width / height), and if `of_lights` in
-// front of and behind each light. Empty where the scene has no media.
-Buffer find_start_media(Device& device, Scene& scene, uint32_t receiver, float film_aspect, bool of_lights);
+// RecordRefs: at the receiver, and if `of_lights` in front of and behind each light. Empty where the scene
+// has no media.
+class StartMedia {
+  public:
+    StartMedia(Device& device, Scene& scene, bool of_lights);
+    const Buffer& buffer() const { return media_; }
+    // Asks for all of them, or for that of the receiver alone; `film_aspect`: of the image, width / height.
+    void find(uint32_t receiver, float film_aspect);
+    void find_of_receiver(uint32_t receiver, float film_aspect);
+
+  private:
+    void ask(uint32_t count, uint32_t receiver, float film_aspect);
+    Device& device_;
+    uint32_t count_ = 0;
+    Buffer media_;
+    Kernel kernel_;
+};
 
 }  // namespace etendue

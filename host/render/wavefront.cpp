@@ -142,7 +142,7 @@ void Wavefront::record_bounce(CommandList& commands, uint32_t bounce, uint32_t a
     // The queues take turns; a submission has an even number of bounces, so each starts with the first.
     const uint32_t read = bounce % 2 ? slots_ : 0, write = bounce % 2 ? 0 : slots_;
     const uint32_t counter = counts_a_bounce * bounce;
-    const bool sorts = !sort_hits_.name().empty();
+    const bool sorts = bool(sort_hits_);
     commands.dispatch(find_hits_, groups(find_hits_, alive, items_a_lane_),
                       {{"counter", counter}, {"read_queue", read}});
     if (sorts)
@@ -167,7 +167,7 @@ void Wavefront::warm_up(CommandList& commands) {
     commands.fill(queue_counts_, 0);
     if (class_counts_) commands.fill(class_counts_, 0);
     for (const Kernel* kernel : {&emit_rays_, &find_hits_, &sort_hits_, &find_occlusions_})
-        if (!kernel->name().empty()) commands.dispatch(*kernel, 1);
+        if (*kernel) commands.dispatch(*kernel, 1);
     for (const Kernel& kernel : scatter_paths_) commands.dispatch(kernel, 1);
     commands.run();
 }

@@ -114,9 +114,9 @@ std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescriptio
         std::string names;
         for (const Parameter& p : info.parameters)
             if (p.from_scene) names += (names.empty() ? "" : ", ") + p.member.name;
-        fail_input("{}/{}: unknown parameter of {} {}; allowed: {}",
-                   message_place(resolver.scene, object.where), name, interface_info(info.interface).name,
-                   info.name, names.empty() ? "none" : names);
+        fail_input("{}: unknown parameter of {} {}; allowed: {}",
+                   message_place(resolver.scene, object.where + "/" + name),
+                   interface_info(info.interface).name, info.name, names.empty() ? "none" : names);
     }
     for (const Parameter& p : info.parameters) {
         if (p.member.type == "Placement") {

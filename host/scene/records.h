@@ -44,6 +44,7 @@ struct RecordResolver {
 
 constexpr uint32_t no_record = 0xFFFFFFFFu;
 constexpr uint32_t record_ref(uint32_t tag, uint32_t index) { return tag << 24 | index; }
+constexpr uint32_t record_index(uint32_t ref) { return ref & 0xFFFFFFu; }
 
 // One record's bytes. `placement` (world_from_local) goes into members of type Placement. Unknown parameters,
 // wrong types and values out of range fail with file, JSON pointer, and what is allowed.

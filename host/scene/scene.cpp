@@ -42,6 +42,7 @@ Scene SceneCompiler::run() {
     out_.cache_folder = options_.cache_folder;
     out_.features.independent_samples = options_.samples == SampleSequence::independent;
     out_.sources.folder = options_.shaders;
+    out_.sources.keep_folder();
     out_.registry = std::make_unique<ClassRegistry>(out_.sources);
     add_class_files();
     for (const PlacedObject& element : in_.elements)
@@ -162,8 +163,10 @@ void SceneCompiler::write_headers() {
     for (const InterfaceInfo& interface : all_interfaces()) {
         const auto& classes = out_.classes[interface.interface];
         std::map<std::string, ClassConstants> constants;
-        for (const ClassInfo* info : classes)
-            constants[info->name] = records_[interface.interface].constant_members(*info);
+        // Receivers move and zoom while the kernels stay.
+        if (interface.interface != Interface::receiver)
+            for (const ClassInfo* info : classes)
+                constants[info->name] = records_[interface.interface].constant_members(*info);
         out_.sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] =
             class_header(interface, classes, constants);
     }
@@ -192,11 +195,21 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
     CompileOptions options;
     options.defines = scene.features.defines() + defines;
     options.cache_folder = scene.cache_folder;
-    const CompiledShader shader = compile_shader(scene.sources, file, options);
-    scene.kernels.push_back({shader.name, shader.from_cache, shader.seconds, shader.spirv.size() * 4});
+    const uint64_t key = hash_text(file, hash_text(options.defines, scene.sources.hash()));
+    std::shared_ptr<const Program> program = device.programs->find(key);
+    KernelReport report{"", key, true, 0, 0};
+    if (!program) {
+        const CompiledShader shader = compile_shader(scene.sources, file, options);
+        report.from_cache = shader.from_cache, report.seconds = shader.seconds;
+        program = std::make_shared<const Program>(device, shader);
+        device.programs->add(key, program);
+    }
+    report.name = program->name(), report.spirv_bytes = program->spirv_bytes();
+    if (std::none_of(scene.kernels.begin(), scene.kernels.end(), [&](auto& k) { return k.key == key; }))
+        scene.kernels.push_back(report);
     BufferTable table = buffers;
     for (const auto& [name, buffer] : scene.buffers) table.emplace(name, &buffer);
-    Kernel kernel(device, shader, table);
+    Kernel kernel(device, std::move(program), table);
     for (const auto& block : kernel.layout().blocks)
         scene.reads_color_spectra |= block.name == "ColorSpectra";
     return kernel;

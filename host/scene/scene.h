@@ -24,11 +24,15 @@ struct Receiver {
     std::string name;
     uint32_t ref = no_record;
     float aspect_ratio = 0;  // of its image; 0 = the scene does not say
+    const ClassInfo* info = nullptr;
+    nlohmann::json parameters;         // as in the scene file
+    glm::dmat4 world_from_local{1.0};  // in the coordinates of the scene file
 };
 
-// What was compiled of a kernel, for --stats and inspect.
+// What was compiled of a kernel, for --stats and inspect; each once a scene.
 struct KernelReport {
     std::string name;
+    uint64_t key = 0;  // of ProgramStore
     bool from_cache = false;
     double seconds = 0;
     size_t spirv_bytes = 0;
@@ -41,6 +45,7 @@ struct Scene {
     std::unique_ptr<ClassRegistry> registry;
     std::map<std::string, Buffer> buffers;
     std::vector<Receiver> receivers;
+    uint64_t receiver_moves = 0;  // calls of move_receiver
     std::vector<std::string> warnings;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;
     glm::dvec3 center{0};  // of the device's world coordinates
@@ -69,6 +74,12 @@ struct SceneOptions {
 
 // Errors: fail_input for what is wrong in the scene, fail_device for what the device cannot hold.
 Scene compile_scene(Device& device, const SceneDescription& description, const SceneOptions& options);
+
+// Puts a receiver elsewhere, with other parameters: rewrites its record, compiles nothing. Images through it
+// begin anew with Renderer::restart. Fails, and changes nothing, where a parameter is wrong or the placement
+// is singular.
+void move_receiver(Scene& scene, size_t receiver, const glm::dmat4& world_from_local,
+                   const nlohmann::json& parameters);
 
 // Compiles a kernel for the scene; `buffers` adds to the scene's own, `defines` to the features'.
 Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,

@@ -55,28 +55,49 @@ void SceneCompiler::upload_world() {
 }
 
 void SceneCompiler::add_receivers() {
-    std::vector<Added> added;
-    for (const PlacedObject& receiver : in_.receivers) {
-        ObjectDescription object = receiver.object;
-        const float aspect = object.parameters.value("aspect_ratio", 0.0f);
-        object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
-        added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local)));
-        out_.receivers.push_back({receiver.name, no_record, aspect});
-    }
-    if (in_.receivers.empty() && out_.radius > 0) {
+    std::vector<PlacedObject> all = in_.receivers;
+    if (all.empty() && out_.radius > 0) {
         // glTF leaves the view to the program where a file has no camera: the whole scene from the front, a
         // little above.
         const double yfov = 0.6;
         const glm::dvec3 from =
             glm::normalize(glm::dvec3(0.35, 0.25, 1.0)) * (double(out_.radius) / std::sin(yfov / 2));
-        const glm::dmat4 placement = glm::inverse(glm::lookAt(from, glm::dvec3(0), glm::dvec3(0, 1, 0)));
-        added.push_back(add_record(Interface::receiver, {"perspective", {{"yfov", yfov}}, ""}, placement));
-        out_.receivers.push_back({"(default)", no_record, 0});
+        const glm::dmat4 placement =
+            glm::inverse(glm::lookAt(from + out_.center, out_.center, glm::dvec3(0, 1, 0)));
+        all.push_back({"(default)", {"perspective", {{"yfov", yfov}}, ""}, placement, 0});
         out_.warnings.push_back(
             fmt::format("{}: the scene has no camera: all of it is shown from the front", in_.file.string()));
     }
+    std::vector<Added> added;
+    for (const PlacedObject& receiver : all) {
+        ObjectDescription object = receiver.object;
+        const float aspect = object.parameters.value("aspect_ratio", 0.0f);
+        object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
+        added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local)));
+        out_.receivers.push_back({receiver.name, no_record, aspect, added.back().info, object.parameters,
+                                  receiver.world_from_local});
+    }
     const auto refs = references(Interface::receiver, added);
     for (size_t i = 0; i < refs.size(); ++i) out_.receivers[i].ref = refs[i];
+}
+
+void move_receiver(Scene& scene, size_t index, const glm::dmat4& world_from_local,
+                   const nlohmann::json& parameters) {
+    Receiver& receiver = scene.receivers.at(index);
+    SceneDescription place;  // for messages
+    place.file = "receiver " + receiver.name;
+    glm::dmat4 placement = world_from_local;
+    placement[3] -= glm::dvec4(scene.center, 0);
+    const double volume = glm::determinant(glm::dmat3(placement));
+    if (!std::isfinite(volume) || volume == 0)
+        fail_input("{}: its placement squashes space flat", place.file.string());
+    const std::vector<std::byte> record =
+        fill_record(*receiver.info, {receiver.info->name, parameters, ""}, placement, RecordResolver{place});
+    scene.buffers.at("ReceiverRecords")
+        .write(record.data(), record.size(), uint64_t(record_index(receiver.ref)) * receiver.info->stride);
+    receiver.parameters = parameters;
+    receiver.world_from_local = world_from_local;
+    ++scene.receiver_moves;
 }
 
 }  // namespace etendue

@@ -151,8 +151,9 @@ TEST_CASE("paths start among the bodies that hold their start, whose faces may c
     light(3, 0.4, 0, true), light(7, 0.3, 0, false);
     s.perspective(1, at(0.75, 0, 0));
     Scene scene = compile_test_scene(s.import());
-    const Buffer buffer = find_start_media(test_device(), scene, scene.receivers[0].ref, 1, true);
-    const auto words = buffer.read_array<uint32_t>(3 * (1 + 2 * scene.lights));
+    StartMedia media(test_device(), scene, true);
+    media.find(scene.receivers[0].ref, 1);
+    const auto words = media.buffer().read_array<uint32_t>(3 * (1 + 2 * scene.lights));
     CHECK(words[0] == 0x110);
     const uint32_t fog = words[2];
     CHECK(fog != no_record);

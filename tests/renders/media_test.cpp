@@ -85,8 +85,9 @@ TEST_CASE("paths start in the medium around them, by closed boundaries, nested, 
 
     Scene scene = compile_test_scene(s.import());
     const uint32_t lights = uint32_t(scene.lights);
-    const Buffer buffer = find_start_media(test_device(), scene, scene.receivers[0].ref, 1, true);
-    const auto media = buffer.read_array<uint32_t>(1 + 2 * lights);
+    StartMedia of_all(test_device(), scene, true);
+    of_all.find(scene.receivers[0].ref, 1);
+    const auto media = of_all.buffer().read_array<uint32_t>(1 + 2 * lights);
     const auto materials = scene.buffers.at("Materials").read_array<MaterialRecord>(scene.materials);
     const auto medium = [&](int material) {
         return material < 0 ? no_record : materials[size_t(material)].inside;
@@ -99,8 +100,9 @@ TEST_CASE("paths start in the medium around them, by closed boundaries, nested, 
         CHECK(media[3 + 2 * i] == medium(p.front[i]));
         CHECK(media[4 + 2 * i] == medium(p.back[i]));
     }
-    const Buffer of_receiver = find_start_media(test_device(), scene, scene.receivers[0].ref, 1, false);
-    CHECK(of_receiver.read_array<uint32_t>(1)[0] == medium(glass));
+    StartMedia of_receiver(test_device(), scene, false);
+    of_receiver.find(scene.receivers[0].ref, 1);
+    CHECK(of_receiver.buffer().read_array<uint32_t>(1)[0] == medium(glass));
 }
 
 namespace {
