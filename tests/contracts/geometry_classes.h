@@ -1,0 +1,294 @@
+// What the tests of geometry classes know of each beside its contract, in double precision, and one object of
+// a class asked through the interface on the device.
+#pragma once
+#include <doctest/doctest.h>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <optional>
+#include <random>
+
+#include "tests/support/geometry_probe.h"
+#include "tests/support/light_probe.h"
+
+namespace etendue {
+
+// What the tests know of a class beside its contract.
+struct Oracle {
+    nlohmann::json parameters;
+    // In double precision: distances of all crossings of the line, in any order.
+    std::function<std::vector<double>(glm::dvec3 origin, glm::dvec3 direction)> crossings;
+    // Signed distance of a point near the surface from it (rims aside).
+    std::function<double(glm::dvec3)> distance;
+    Box bounds;
+};
+
+inline const glm::dvec3 corner[3] = {{-0.7, -0.4, 0.2}, {0.9, -0.3, -0.5}, {0.1, 0.8, 0.6}};
+
+inline std::vector<double> quadratic(double a, double b, double c) {  // a t² + 2 b t + c
+    const double d = b * b - a * c;
+    if (!(d >= 0) || a == 0) return {};
+    return {(-b - std::sqrt(d)) / a, (-b + std::sqrt(d)) / a};
+}
+
+inline const std::map<std::string, Oracle>& oracles() {
+    using V = glm::dvec3;
+    using Ts = std::vector<double>;
+    static const std::map<std::string, Oracle> table{
+        {"triangle",
+         {{},
+          [](V o, V d) -> Ts {
+              const V e1 = corner[1] - corner[0], e2 = corner[2] - corner[0], n = glm::cross(e1, e2);
+              const double t = glm::dot(n, corner[0] - o) / glm::dot(n, d);
+              const V p = o + t * d - corner[0];
+              const double b1 = glm::dot(glm::cross(p, e2), n) / glm::dot(n, n);
+              const double b2 = glm::dot(glm::cross(e1, p), n) / glm::dot(n, n);
+              if (b1 < 0 || b2 < 0 || b1 + b2 > 1) return {};
+              return {t};
+          },
+          [](V p) {
+              return glm::dot(glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0])),
+                              p - corner[0]);
+          },
+          {{-0.7f, -0.4f, -0.5f}, {0.9f, 0.8f, 0.6f}}}},
+        {"sphere",
+         {{{"radius", 0.8}},
+          [](V o, V d) { return quadratic(glm::dot(d, d), glm::dot(o, d), glm::dot(o, o) - 0.64); },
+          [](V p) { return glm::length(p) - double(0.8f); },
+          {glm::vec3(-0.8f), glm::vec3(0.8f)}}},
+        {"disk",
+         {{{"radius", 0.8}},
+          [](V o, V d) -> Ts {
+              const V p = o - o.z / d.z * d;
+              if (glm::length(p) > 0.8) return {};
+              return {-o.z / d.z};
+          },
+          [](V p) { return p.z; },
+          {{-0.8f, -0.8f, 0}, {0.8f, 0.8f, 0}}}},
+        {"rectangle",
+         {{{"size", {1.5, 0.7}}},
+          [](V o, V d) -> Ts {
+              const V p = o - o.z / d.z * d;
+              if (std::abs(p.x) > 0.75 || std::abs(p.y) > 0.35) return {};
+              return {-o.z / d.z};
+          },
+          [](V p) { return p.z; },
+          {{-0.75f, -0.35f, 0}, {0.75f, 0.35f, 0}}}},
+        {"cylinder",
+         {{{"radius", 0.5}, {"height", 1.4}},
+          [](V o, V d) -> Ts {
+              Ts result;
+              for (double t :
+                   quadratic(d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y, o.x * o.x + o.y * o.y - 0.25))
+                  if (std::abs(o.z + t * d.z) <= 0.7) result.push_back(t);
+              return result;
+          },
+          [](V p) { return std::hypot(p.x, p.y) - 0.5; },
+          {{-0.5f, -0.5f, -0.7f}, {0.5f, 0.5f, 0.7f}}}},
+    };
+    return table;
+}
+
+inline std::vector<std::string> registered() {
+    std::vector<std::string> names;
+    for (const ClassInfo& info : ClassRegistry(test_sources()).classes(Interface::geometry))
+        names.push_back(info.name);
+    return names;
+}
+
+struct Sample {
+    glm::vec3 position, normal;
+    float pdf, pdf_towards;
+};
+struct Meeting {
+    uint32_t met;
+    float t;
+    glm::vec3 position, error, normal;
+};
+
+inline const char* const sample_kernel = R"(
+    #include "interfaces/geometry.glsl"
+    layout(local_size_x = 64) in;
+    struct Sample { vec3 position, normal; float pdf, pdf_towards; };
+    layout(scalar, set = 0) readonly buffer Uniforms { vec2 uniforms[]; };
+    layout(scalar, set = 0) writeonly buffer Samples { Sample samples[]; };
+    layout(push_constant) uniform Push { uint count, ref, towards; float x, y, z; };
+    void main() {
+        uint i = gl_GlobalInvocationID.x;
+        if (i >= count) return;
+        vec3 reference = vec3(x, y, z);
+        GeometrySample s;
+        if (towards != 0u) s = geometry_sample_towards(ref, reference, uniforms[i]);
+        else s = geometry_sample(ref, uniforms[i]);
+        samples[i] = Sample(s.position, s.normal, s.pdf, geometry_pdf_towards(ref, reference, s.position, s.normal));
+    }
+)";
+inline const char* const meet_kernel = R"(
+    #include "interfaces/geometry.glsl"
+    layout(local_size_x = 64) in;
+    struct Ray { vec3 origin; float t_max; vec3 direction; float unused; };
+    struct Meeting { uint met; float t; vec3 position, error, normal; };
+    layout(scalar, set = 0) readonly buffer Rays { Ray rays[]; };
+    layout(scalar, set = 0) writeonly buffer Meetings { Meeting meetings[]; };
+    layout(push_constant) uniform Push { uint count, ref; };
+    void main() {
+        uint i = gl_GlobalInvocationID.x;
+        if (i >= count) return;
+        Ray r = rays[i];
+        GeometryHit hit;
+        bool met = geometry_intersect(ref, r.origin, r.direction, r.t_max, hit);
+        Meeting m = Meeting(uint(met), hit.t, vec3(0), vec3(0), vec3(0));
+        if (met) {
+            LocalPoint p = geometry_locate(ref, r.origin, r.direction, hit);
+            m.position = p.position, m.error = p.error, m.normal = p.normal;
+        }
+        meetings[i] = m;
+    }
+)";
+inline const char* const measure_kernel = R"(
+    #include "interfaces/geometry.glsl"
+    layout(local_size_x = 1) in;
+    layout(scalar, set = 0) writeonly buffer Measures { float area; vec3 lo; vec3 hi; };
+    layout(push_constant) uniform Push { uint ref; };
+    void main() {
+        area = geometry_area(ref);
+        vec3 l, h;
+        geometry_bounds(ref, l, h);
+        lo = l, hi = h;
+    }
+)";
+
+// One object of a class, asked through the interface.
+class ClassProbe {
+  public:
+    explicit ClassProbe(const std::string& name) : registry_(test_sources()), sources_(test_sources()) {
+        const ClassInfo* info = registry_.find(Interface::geometry, name);
+        REQUIRE(info);
+        const InterfaceInfo& interface = interface_info(Interface::geometry);
+        std::vector<std::byte> record;
+        if (name == "triangle") {  // is read in place of other records
+            const PrimitiveRecord triangle{corner[0], 0, corner[1], no_record, corner[2], 0};
+            record.resize(sizeof triangle);
+            std::memcpy(record.data(), &triangle, sizeof triangle);
+        } else {
+            const SceneDescription scene;
+            record = fill_record(*info, {name, oracles().at(name).parameters, "/geometry"}, {},
+                                 {scene, {}, {}, {}});
+        }
+        RecordBuffer records;
+        records.add(*info, record);
+        records.layout();
+        records_ = create_buffer(test_device(), records.bytes(), "geometry records");
+        ref_ = records.ref(*info, 0);
+        sources_.generated["generated/geometry_classes.glsl"] = class_header(interface, {info});
+        sample_ = compile("sample", sample_kernel);
+        meet_ = compile("meet", meet_kernel);
+        const Buffer out(test_device(), 7 * sizeof(float), "measures");
+        run(compile("measure", measure_kernel), {{"Measures", &out}}, 1, {{"ref", ref_}});
+        const std::vector<float> numbers = out.read_array<float>(7);
+        area = numbers[0];
+        bounds = {{numbers[1], numbers[2], numbers[3]}, {numbers[4], numbers[5], numbers[6]}};
+    }
+
+    std::vector<Sample> sample(const std::vector<glm::vec2>& u, std::optional<glm::vec3> towards = {},
+                               glm::vec3 reference = glm::vec3(0)) {
+        if (towards) reference = *towards;
+        const Buffer in = create_buffer(test_device(), u, "uniforms");
+        const Buffer out(test_device(), u.size() * sizeof(Sample), "samples");
+        run(sample_, {{"Uniforms", &in}, {"Samples", &out}}, uint32_t(u.size()),
+            {{"count", uint32_t(u.size())},
+             {"ref", ref_},
+             {"towards", uint32_t(towards.has_value())},
+             {"x", reference.x},
+             {"y", reference.y},
+             {"z", reference.z}});
+        return out.read_array<Sample>(u.size());
+    }
+
+    std::vector<Meeting> meet(const std::vector<ProbeRay>& rays) {
+        const Buffer in = create_buffer(test_device(), rays, "rays");
+        const Buffer out(test_device(), rays.size() * sizeof(Meeting), "meetings");
+        run(meet_, {{"Rays", &in}, {"Meetings", &out}}, uint32_t(rays.size()),
+            {{"count", uint32_t(rays.size())}, {"ref", ref_}});
+        return out.read_array<Meeting>(rays.size());
+    }
+
+    float area = 0;
+    Box bounds;
+
+  private:
+    CompiledShader compile(const std::string& name, const std::string& text) {
+        ShaderSources sources = sources_;
+        sources.generated[name] = text;
+        return compile_shader(sources, name);
+    }
+    void run(const CompiledShader& shader, BufferTable buffers, uint32_t count,
+             std::initializer_list<PushValue> values) {
+        buffers[interface_info(Interface::geometry).buffer] = &records_;
+        const Kernel kernel(test_device(), shader, buffers);
+        CommandList list(test_device());
+        list.dispatch(kernel, (count + 63) / 64, values);
+        list.run();
+    }
+    ClassRegistry registry_;
+    ShaderSources sources_;
+    CompiledShader sample_, meet_;
+    Buffer records_;
+    uint32_t ref_ = 0;
+};
+
+struct Random {
+    std::mt19937 engine;
+    explicit Random(uint32_t seed) : engine(seed) {}
+    float operator()(float lo, float hi) { return std::uniform_real_distribution<float>(lo, hi)(engine); }
+    glm::vec3 direction() {
+        const float z = (*this)(-1, 1), phi = (*this)(0, 6.2831853f), r = std::sqrt(1 - z * z);
+        return {r * std::cos(phi), r * std::sin(phi), z};
+    }
+};
+
+inline std::vector<glm::vec2> uniform_points(size_t n, uint32_t seed) {
+    Random random(seed);
+    std::vector<glm::vec2> u(n);
+    for (glm::vec2& v : u) v = {std::min(random(0, 1), 0.99999994f), std::min(random(0, 1), 0.99999994f)};
+    return u;
+}
+
+inline std::vector<glm::vec2> grid_points(int n) {
+    std::vector<glm::vec2> u;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++)
+            u.emplace_back((float(i) + 0.5f) / float(n), (float(j) + 0.5f) / float(n));
+    return u;
+}
+
+constexpr int side = 6;
+inline size_t cell_of(const Box& bounds, const glm::vec3& p) {
+    size_t cell = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const float extent = bounds.hi[axis] - bounds.lo[axis];
+        const float place = extent > 0 ? (p[axis] - bounds.lo[axis]) / extent : 0.0f;
+        cell = cell * side + size_t(std::clamp(int(place * side), 0, side - 1));
+    }
+    return cell;
+}
+
+// Isotropic uniform lines through the ball around the bounds: the measure that counts area (Crofton).
+inline std::vector<ProbeRay> random_lines(const Box& bounds, size_t count, float& radius, uint32_t seed) {
+    Random random(seed);
+    const glm::vec3 center = 0.5f * (bounds.lo + bounds.hi);
+    radius = 0.5f * glm::length(bounds.hi - bounds.lo) * 1.01f;
+    std::vector<ProbeRay> rays(count);
+    for (ProbeRay& r : rays) {
+        const glm::vec3 d = random.direction();
+        const glm::vec3 a =
+            glm::normalize(glm::cross(d, std::abs(d.x) < 0.7f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0)));
+        const glm::vec3 b = glm::cross(d, a);
+        const float rho = radius * std::sqrt(random(0, 1)), phi = random(0, 6.2831853f);
+        r = {center + rho * (std::cos(phi) * a + std::sin(phi) * b) - 2 * radius * d, 1e30f, d};
+    }
+    return rays;
+}
+
+}  // namespace etendue
