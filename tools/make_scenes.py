@@ -383,6 +383,34 @@ def prism():
     return s
 
 
+def rainbow():
+    s = Gltf(
+        "rainbow",
+        "Theodoric's rainbow: a beam of white light (D65) comes through a hole in a white screen and fills a ball of"
+        " water, 5 cm wide and 53 cm away, which throws light back around the hole. After one reflection in the water the"
+        " light ends at a bright ring, red outside, violet inside, under Descartes' angles of 42.4 and 40.6 degrees: 51"
+        " and 48 cm from the axis, as rays leave the ball 2.5 cm beside its centre. A faint ring after two reflections,"
+        " with red inside, begins at 50 degrees, 60 cm from the axis; between the two it is darkest.",
+    )
+    s.environment = {"class": "constant", "radiance": 0.002}
+    s.medium("water", ior={"name": "water ior"})
+    white = s.surface("white", "lambertian", reflectance=0.8)
+    s.shape("drop", "sphere", s.surface("water", "dielectric", inside="water"), [0, 0, 0], radius=0.025)
+    distance, hole, width, height = 0.53, 0.03, 0.95, 0.75
+    for name, x0, x1, y0, y1 in (
+        ("left", -width, -hole, -height, height),
+        ("right", hole, width, -height, height),
+        ("below", -hole, hole, -height, -hole),
+        ("above", -hole, hole, hole, height),
+    ):
+        corners = [[x1, y0, distance], [x0, y0, distance], [x0, y1, distance], [x1, y1, distance]]
+        s.quad("screen, " + name, white, corners)
+    s.light("beam", "spot", 6e5, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 8, 1],
+            spot={"innerConeAngle": 0.0033, "outerConeAngle": 0.0034})
+    s.camera([0.5, -0.25, -0.85], [0, 0, 0.53], 54, 1.5)
+    return s
+
+
 def spheres():
     s = Gltf(
         "spheres",
@@ -739,6 +767,7 @@ SCENES = [
     pool,
     iced_water,
     prism,
+    rainbow,
     spheres,
     lamps,
     materials,

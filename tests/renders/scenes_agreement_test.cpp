@@ -44,10 +44,11 @@ std::vector<std::filesystem::path> scene_files() {
     return files;
 }
 
-// The lamp of the prism is a point, which no backward ray meets behind smooth glass, and what it lights is
-// seen through the glass by bidirectional rays only: what stands above the prism in the image is compared.
-void compare_above_prism(Scene& scene, const Comparison& c) {
-    const Window window = {0, 0, c.width, 14};
+// The lamps of these scenes are points, which no backward ray meets behind smooth glass, and what they light
+// is seen through the glass by bidirectional rays only: what is seen beside the glass is compared.
+const std::map<std::string, Window> beside_glass = {{"prism", {0, 0, 32, 14}}, {"rainbow", {0, 0, 18, 24}}};
+
+void compare_beside_glass(Scene& scene, const Comparison& c, const Window& window) {
     RenderPlan plan;
     plan.width = c.width, plan.height = c.height, plan.seeds = c.seeds;
     plan.merge_radius = c.merge_radius;
@@ -90,8 +91,8 @@ TEST_CASE("algorithms agree: every scene in scenes/" * doctest::test_suite("long
                 widen_lamp(description, h.wider);
             }
             Scene scene = compile_test_scene(description);
-            if (name == "prism")
-                compare_above_prism(scene, c);
+            if (const auto window = beside_glass.find(name); window != beside_glass.end())
+                compare_beside_glass(scene, c, window->second);
             else
                 check_against_backward(scene, c);
         }
