@@ -24,11 +24,11 @@ const glm::dvec3 lamp(1.5, 0, 0.8), image_of_lamp(2.2, 0, 1.5);
 
 // The mirror lies in x + z = 3. Parallel rays of the camera along +x meet it and go straight down: a point of
 // the film z - 3 to the right shows the floor at x = 3 - z.
-SceneBuilder mirrored_floor() {
+SceneBuilder mirrored_floor(double alpha = 0) {
     SceneBuilder s;
     s.orthographic(view / 2, {{-3, 0, 3}, {0, -half_turn, 0, half_turn}});
     const double turn = std::numbers::pi / 8;  // half of that from +z to (1, 0, 1) about +y
-    s.rectangle(8, 4, s.surface({{"class", "conductor"}, {"reflectance", 1}}),
+    s.rectangle(8, 4, s.surface({{"class", "conductor"}, {"reflectance", 1}, {"alpha", alpha}}),
                 {{0, 0, 3}, {0, std::sin(turn), 0, std::cos(turn)}});
     s.light({{"type", "point"}, {"intensity", intensity}}, {lamp});
     return s;
@@ -114,6 +114,19 @@ TEST_CASE("light that only merging brings is that of the mirrored lamp, but for 
     CHECK(std::fabs(bias[0]) < 0.004);
     CHECK(std::fabs(bias[1]) > 0.005);
     CHECK(std::fabs(bias[2]) < 0.5 * std::fabs(bias[1]));
+}
+
+// Here vertices at the mirror, of either path, connect to those on the floor, which merge, too.
+TEST_CASE(
+    "light that comes and is seen by way of a nearly smooth mirror: connections leave merging its share") {
+    SceneBuilder s = mirrored_floor(0.02);
+    s.rectangle(4, 4, s.lambertian(0.5), at(0, 0, 0));
+    Comparison c;
+    c.width = c.height = pixels;
+    c.backward = 2048, c.forward = 0, c.bidirectional = 32;
+    c.merge_radius = float(0.1 * pixels / view);
+    c.largest_error = 0.01;
+    check_against_backward(s, c);
 }
 
 // A thin wall at x = 0 keeps both lamps' light from the floor behind it. A disk of the merging radius reaches

@@ -22,7 +22,7 @@ const Window window = {0, pixels / 2 + 2, pixels, pixels / 2 - 2};
 
 struct Haze {
     json medium;
-    double alpha = 0;  // of the plate
+    double alpha = 0;  // of ball and plate
 };
 
 json coloured_haze() {
@@ -39,7 +39,9 @@ SceneBuilder ball_in_haze(const Haze& haze, bool behind_plate) {
     add_box(s, {2, 2, 1.2f}, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "haze"}}), false,
             at(0, 0, 0));
     s.sphere(0.5,
-             s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "lens"}, {"outside", "haze"}}),
+             s.material({{"surface", {{"class", "dielectric"}, {"alpha", haze.alpha}}},
+                         {"inside", "lens"},
+                         {"outside", "haze"}}),
              at(0, 0.45, 0));
     add_box(s, {4, 4, 0.2f},
             s.material({{"surface", {{"class", "dielectric"}, {"alpha", haze.alpha}}}, {"inside", "plate"}}),
@@ -96,7 +98,7 @@ TEST_CASE("a caustic in haze, through glass that is nearly smooth: connections a
     check_caustic({coloured_haze(), 0.02}, 0.05, 0.005);
 }
 
-TEST_CASE("a caustic in haze whose density varies") {
+TEST_CASE("a caustic in haze whose density varies" * doctest::test_suite("long")) {
     TemporaryFolder folder;
     DensityField({24, 24, 24}, glm::dvec3(-1), glm::dvec3(1), [](glm::dvec3 p) {
         return 1.5 - 0.5 * p.y + 0.8 * std::sin(9 * p.x) * std::cos(7 * p.z);
