@@ -31,6 +31,8 @@ uint64_t scene_hash(const Scene& scene) {
     uint64_t hash = hash_bytes({});
     for (const auto& [name, buffer] : scene.buffers)
         hash = hash_bytes(buffer.read_array<std::byte>(buffer.bytes()), hash);
+    for (const auto& [name, buffer] : scene.shared_buffers)
+        hash = hash_bytes(buffer->read_array<std::byte>(buffer->bytes()), hash);
     for (const SpectralTable& spectrum : scene.spectra)
         hash = hash_bytes(std::as_bytes(std::span(spectrum.values)), hash);
     for (const auto& [name, text] : scene.sources.generated)

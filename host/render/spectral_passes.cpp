@@ -13,7 +13,8 @@ constexpr uint32_t most_passes = 64;
 SpectralPasses::SpectralPasses(Device& device, const Scene& scene) : scene_(scene) {
     if (!scene.features.spectral) return;
     wavelengths_ = Buffer(device, most_passes * sizeof(Wavelengths), "WavelengthTable");
-    values_ = Buffer(device, most_passes * scene.spectra.size() * sizeof(glm::vec4), "SpectrumValues");
+    values_ =
+        Buffer(device, most_passes * scene.features.spectrum_count * sizeof(glm::vec4), "SpectrumValues");
     colors_ = Buffer(device, color_spectra_count * sizeof(glm::vec3), "ColorSpectra");
 }
 
@@ -37,6 +38,7 @@ void SpectralPasses::write(uint64_t first, uint32_t count, uint32_t seed) {
         const glm::vec4& nm = wavelengths.back().nm;
         for (const SpectralTable& s : scene_.spectra)
             values.emplace_back(s.at(nm.x), s.at(nm.y), s.at(nm.z), s.at(nm.w));
+        values.resize((pass + 1) * scene_.features.spectrum_count);
     }
     wavelengths_.write(wavelengths.data(), wavelengths.size() * sizeof(Wavelengths));
     values_.write(values.data(), values.size() * sizeof(glm::vec4));

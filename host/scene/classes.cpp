@@ -73,7 +73,8 @@ void parse_annotation(const std::string& annotation, Parameter& p, const std::st
 }
 
 // A shader that uses a struct in a buffer, so that its layout can be read from the SPIR-V.
-ShaderLayout compile_layout(ShaderSources sources, const std::string& includes, const std::string& record) {
+ShaderLayout compile_layout(ShaderSources sources, const std::string& includes, const std::string& record,
+                            const std::filesystem::path& cache_folder) {
     for (const InterfaceInfo& interface : all_interfaces()) {
         auto& header = sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)];
         if (header.empty()) header = class_header(interface, {});
@@ -85,6 +86,7 @@ ShaderLayout compile_layout(ShaderSources sources, const std::string& includes, 
     CompileOptions options;
     options.defines = Features::everything().defines();
     options.optimize = false;
+    options.cache_folder = cache_folder;
     return reflect_shader(compile_shader(sources, "reflect_record.comp", options).spirv);
 }
 
@@ -128,7 +130,8 @@ std::string Parameter::range() const {
     return fmt::format("{}{}, {}{}", lo_open ? '(' : '[', lo, hi, hi_open ? ')' : ']');
 }
 
-ClassRegistry::ClassRegistry(ShaderSources sources) : sources_(std::move(sources)) {
+ClassRegistry::ClassRegistry(ShaderSources sources, std::filesystem::path cache_folder)
+    : sources_(std::move(sources)), cache_folder_(std::move(cache_folder)) {
     if (!sources_.folder.empty() && !std::filesystem::exists(sources_.folder / "registry.h"))
         fail_input("{}: not a folder of shaders: it has no registry.h", sources_.folder.string());
     const std::string text = sources_.get("registry.h");
@@ -194,7 +197,8 @@ const ClassInfo* ClassRegistry::find(Interface interface, const std::string& nam
 
 std::vector<MemberLayout> ClassRegistry::reflect_struct(const std::string& file, const std::string& name,
                                                         uint32_t& stride) const {
-    const ShaderLayout layout = compile_layout(sources_, fmt::format("#include \"{}\"\n", file), name);
+    const ShaderLayout layout =
+        compile_layout(sources_, fmt::format("#include \"{}\"\n", file), name, cache_folder_);
     stride = reflected_block(layout).stride;
     return reflected_block(layout).element_members;
 }
@@ -204,8 +208,8 @@ void ClassRegistry::reflect(ClassInfo& info) const {
     ShaderSources sources = sources_;
     sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] =
         class_header(interface, {&info});
-    const ShaderLayout layout =
-        compile_layout(std::move(sources), fmt::format("#include \"{}\"\n", interface.contract), info.record);
+    const ShaderLayout layout = compile_layout(
+        std::move(sources), fmt::format("#include \"{}\"\n", interface.contract), info.record, cache_folder_);
     const BlockLayout& block = reflected_block(layout);
     info.stride = block.stride;
 

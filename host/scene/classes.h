@@ -58,7 +58,8 @@ struct ClassInfo {
 // Reads registry.h at once and class files when they are asked for.
 class ClassRegistry {
   public:
-    explicit ClassRegistry(ShaderSources sources);
+    // `cache_folder`: of compiled shaders; empty = none.
+    explicit ClassRegistry(ShaderSources sources, std::filesystem::path cache_folder = {});
 
     // Adds a class from a file outside the registry: class name = file stem, record = its struct named in
     // CamelCase of the stem. Fails with the file's name where the file or the struct is missing, or the name
@@ -79,6 +80,7 @@ class ClassRegistry {
   private:
     void reflect(ClassInfo& info) const;
     ShaderSources sources_;
+    std::filesystem::path cache_folder_;
     std::map<Interface, std::vector<ClassInfo>> classes_;
 };
 

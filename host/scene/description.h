@@ -101,18 +101,22 @@ struct ClassFileDescription {
     std::string where;
 };
 
-struct SceneDescription {
+// The part of a scene that is edited while one looks at it (live_scene.h): all objects of classes.
+struct SceneObjects {
+    std::vector<MediumDescription> media;
+    std::vector<MaterialDescription> materials;
+    std::vector<PlacedObject> shapes, lights, receivers, elements;
+    std::optional<ObjectDescription> environment;
+};
+
+struct SceneDescription : SceneObjects {
     std::filesystem::path file, folder;
     std::vector<ClassFileDescription> class_files;
     std::map<std::string, nlohmann::json> spectra;  // named spectral values
-    std::vector<MediumDescription> media;
-    std::vector<MaterialDescription> materials;
     std::vector<ImageDescription> images;
     std::vector<TextureDescription> textures;
     std::vector<MeshDescription> meshes;
     std::vector<MeshInstance> instances;
-    std::vector<PlacedObject> shapes, lights, receivers, elements;
-    std::optional<ObjectDescription> environment;
     std::vector<std::string> warnings;  // one line each: what was read but is not modelled
 };
 

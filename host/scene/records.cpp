@@ -102,6 +102,10 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
 
 }  // namespace
 
+std::string member_path(const ClassInfo& info, const std::string& member) {
+    return fmt::format("{}/{}/{}", interface_info(info.interface).name, info.name, member);
+}
+
 std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescription& object,
                                    const std::optional<glm::dmat4>& placement,
                                    const RecordResolver& resolver) {
@@ -179,7 +183,8 @@ void add_measured_kinds(const std::vector<std::byte>& records, uint32_t stride, 
 
 }  // namespace
 
-ClassConstants RecordBuffer::constant_members(const ClassInfo& info) const {
+ClassConstants RecordBuffer::constant_members(const ClassInfo& info,
+                                              const std::set<std::string>& varying) const {
     const auto region = regions_.find(info.name);
     if (region == regions_.end() || region->second.records.empty()) return {};
     const std::vector<std::byte>& records = region->second.records;
@@ -189,6 +194,7 @@ ClassConstants RecordBuffer::constant_members(const ClassInfo& info) const {
         if (type == "MeasuredRef") add_measured_kinds(records, info.stride, p.member, constants);
         const int length = vector_length(type);
         if (!p.from_scene || (p.member.size != 4 && !length)) continue;
+        if (varying.count(member_path(info, name))) continue;
         bool equal = true;
         for (size_t at = info.stride; at < records.size(); at += info.stride)
             equal = equal &&

@@ -6,6 +6,8 @@
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "host/measured/measured_bsdf.h"
@@ -52,6 +54,9 @@ std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescriptio
                                    const std::optional<glm::dmat4>& placement,
                                    const RecordResolver& resolver);
 
+// "surface/conductor/roughness".
+std::string member_path(const ClassInfo& info, const std::string& member);
+
 // The records of one interface in one buffer: each class's region starts at a multiple of its stride, so that
 // all classes can be typed views of the buffer's start.
 class RecordBuffer {
@@ -63,7 +68,8 @@ class RecordBuffer {
     void layout();
     // For class_header: switches (whole numbers, truth values, absent textures, numbers that are 0 or 1,
     // vectors of such numbers) that have the same value in all records of the class.
-    ClassConstants constant_members(const ClassInfo& info) const;
+    // Members whose path "surface/conductor/roughness" stands in `varying` are not among them.
+    ClassConstants constant_members(const ClassInfo& info, const std::set<std::string>& varying) const;
     const std::vector<std::byte>& bytes() const { return bytes_; }
 
   private:

@@ -1,18 +1,21 @@
 #include "host/scene/scene.h"
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "host/error.h"
-#include "host/scene/image_file.h"
 #include "host/scene/scene_compiler.h"
 
 namespace etendue {
 
-SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description, const SceneOptions& options)
+SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description, const SceneOptions& options,
+                             SceneMemory& memory)
     : device_(device),
       in_(description),
       options_(options),
+      memory_(memory),
       threads_(options.threads ? options.threads : std::max(1u, std::thread::hardware_concurrency())),
       resolver_{description, {}, {}, {}} {
     resolver_.spectrum = [this](const SpectralValue& value, SpectralKind kind) {
@@ -24,11 +27,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
                              parse_texture_info(info, content, in_.textures, message_place(in_, where)));
     };
     resolver_.environment_map = [this](const std::filesystem::path& file, const std::string&) {
-        EnvironmentMap map =
-            build_environment_map(read_image_file(file.is_absolute() ? file : in_.folder / file));
-        map.ref.first = uint32_t(environment_texels_.size());
-        environment_texels_.insert(environment_texels_.end(), map.texels.begin(), map.texels.end());
-        return map.ref;
+        return add_environment_map(file.is_absolute() ? file : in_.folder / file);
     };
     resolver_.grid = [this](const nlohmann::json& value, const std::string& where) {
         return add_grid(value, where);
@@ -43,8 +42,7 @@ Scene SceneCompiler::run() {
     out_.features.independent_samples = options_.samples == SampleSequence::independent;
     out_.sources.folder = options_.shaders;
     out_.sources.keep_folder();
-    out_.registry = std::make_unique<ClassRegistry>(out_.sources);
-    add_class_files();
+    find_registry();
     for (const PlacedObject& element : in_.elements)
         fail_input("{}: optical elements are not available in this version",
                    message_place(in_, element.object.where));
@@ -52,7 +50,7 @@ Scene SceneCompiler::run() {
     add_materials();
     add_geometry();
     upload_grids();
-    if (world_.bounds.empty() && !in_.environment && options_.environment.empty())
+    if (memory_.world.bounds.empty() && !in_.environment && options_.environment.empty())
         fail_input("{}: the scene is empty: it has neither geometry nor an environment", in_.file.string());
     add_receivers();
     add_lights();
@@ -61,6 +59,25 @@ Scene SceneCompiler::run() {
     measure_lights();
     choose_color();
     return std::move(out_);
+}
+
+// Classes are reflected at first use, which takes a compilation.
+void SceneCompiler::find_registry() {
+    uint64_t key = out_.sources.hash();
+    for (const ClassFileDescription& file : in_.class_files) {
+        const auto path = file.file.is_absolute() ? file.file : in_.folder / file.file;
+        std::ifstream stream(path, std::ios::binary);
+        const std::string text = (std::ostringstream() << stream.rdbuf()).str();
+        key = hash_text(text, hash_text(path.string(), hash_text(file.interface, key)));
+    }
+    if (memory_.registry && memory_.registry_key == key) {
+        out_.registry = memory_.registry;
+        return;
+    }
+    out_.registry = std::make_shared<ClassRegistry>(out_.sources, options_.cache_folder);
+    add_class_files();
+    memory_.registry = out_.registry;
+    memory_.registry_key = key;
 }
 
 void SceneCompiler::add_class_files() {
@@ -166,7 +183,8 @@ void SceneCompiler::write_headers() {
         // Receivers move and zoom while the kernels stay.
         if (interface.interface != Interface::receiver)
             for (const ClassInfo* info : classes)
-                constants[info->name] = records_[interface.interface].constant_members(*info);
+                constants[info->name] =
+                    records_[interface.interface].constant_members(*info, options_.varying);
         out_.sources.generated[fmt::format("generated/{}_classes.glsl", interface.name)] =
             class_header(interface, classes, constants);
     }
@@ -187,7 +205,13 @@ void SceneCompiler::run_once(const std::string& file, uint32_t items, const Buff
 }
 
 Scene compile_scene(Device& device, const SceneDescription& description, const SceneOptions& options) {
-    return SceneCompiler(device, description, options).run();
+    SceneMemory memory;
+    return compile_scene(device, description, options, memory);
+}
+
+Scene compile_scene(Device& device, const SceneDescription& description, const SceneOptions& options,
+                    SceneMemory& memory) {
+    return SceneCompiler(device, description, options, memory).run();
 }
 
 Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
@@ -197,8 +221,9 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
     options.cache_folder = scene.cache_folder;
     const uint64_t key = hash_text(file, hash_text(options.defines, scene.sources.hash()));
     std::shared_ptr<const Program> program = device.programs->find(key);
-    KernelReport report{"", key, true, 0, 0};
+    KernelReport report{"", key, true, true, 0, 0};
     if (!program) {
+        report.from_store = false;
         const CompiledShader shader = compile_shader(scene.sources, file, options);
         report.from_cache = shader.from_cache, report.seconds = shader.seconds;
         program = std::make_shared<const Program>(device, shader);
@@ -209,6 +234,7 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
         scene.kernels.push_back(report);
     BufferTable table = buffers;
     for (const auto& [name, buffer] : scene.buffers) table.emplace(name, &buffer);
+    for (const auto& [name, buffer] : scene.shared_buffers) table.emplace(name, buffer.get());
     Kernel kernel(device, std::move(program), table);
     for (const auto& block : kernel.layout().blocks)
         scene.reads_color_spectra |= block.name == "ColorSpectra";

@@ -32,18 +32,22 @@ struct Receiver {
 // What was compiled of a kernel, for --stats and inspect; each once a scene.
 struct KernelReport {
     std::string name;
-    uint64_t key = 0;  // of ProgramStore
-    bool from_cache = false;
+    uint64_t key = 0;         // of ProgramStore
+    bool from_store = false;  // the device had its program already, or
+    bool from_cache = false;  // a folder its SPIR-V
     double seconds = 0;
     size_t spirv_bytes = 0;
 };
+
+struct SceneMemory;
 
 struct Scene {
     Features features;
     ShaderSources sources;                                       // with the generated headers
     std::map<Interface, std::vector<const ClassInfo*>> classes;  // in use
-    std::unique_ptr<ClassRegistry> registry;
+    std::shared_ptr<ClassRegistry> registry;
     std::map<std::string, Buffer> buffers;
+    std::map<std::string, std::shared_ptr<Buffer>> shared_buffers;  // with SceneMemory
     std::vector<Receiver> receivers;
     uint64_t receiver_moves = 0;  // calls of move_receiver
     std::vector<std::string> warnings;
@@ -68,12 +72,17 @@ struct SceneOptions {
     std::filesystem::path cache_folder;  // of compiled kernels; empty = none
     ColorMode color = ColorMode::automatic;
     bool spectral_image = false;  // that is asked for: automatic color is spectral
+    // "surface/conductor/roughness": members that kernels read from the records even where all have the same.
+    std::set<std::string> varying;
     SampleSequence samples = SampleSequence::sobol;
     unsigned threads = 0;  // for building; 0 = all
 };
 
-// Errors: fail_input for what is wrong in the scene, fail_device for what the device cannot hold.
+// Errors: fail_input for what is wrong in the scene, fail_device for what the device cannot hold. `memory`:
+// of earlier compilations (scene_memory.h).
 Scene compile_scene(Device& device, const SceneDescription& description, const SceneOptions& options);
+Scene compile_scene(Device& device, const SceneDescription& description, const SceneOptions& options,
+                    SceneMemory& memory);
 
 // Puts a receiver elsewhere, with other parameters: rewrites its record, compiles nothing. Images through it
 // begin anew with Renderer::restart. Fails, and changes nothing, where a parameter is wrong or the placement

@@ -3,9 +3,8 @@
 // and scene_lights.cpp.
 #pragma once
 #include "host/scene/light_tree.h"
-#include "host/scene/density_bricks.h"
 #include "host/scene/scene.h"
-#include "host/scene/texture_pack.h"
+#include "host/scene/scene_memory.h"
 
 namespace etendue {
 
@@ -26,11 +25,13 @@ enum MaterialFlag : uint32_t {
 
 class SceneCompiler {
   public:
-    SceneCompiler(Device& device, const SceneDescription& description, const SceneOptions& options);
+    SceneCompiler(Device& device, const SceneDescription& description, const SceneOptions& options,
+                  SceneMemory& memory);
     Scene run();
 
   private:
     // scene.cpp
+    void find_registry();
     void add_class_files();
     void add_media();
     void add_phases();     // of the media
@@ -51,6 +52,7 @@ class SceneCompiler {
                   std::vector<PushValue> values);
 
     // scene_grids.cpp
+    EnvironmentMapRef add_environment_map(const std::filesystem::path& file);
     uint32_t add_grid(const nlohmann::json& value, const std::string& where);
     void upload_grids();  // once the centre of the world is known
 
@@ -69,11 +71,13 @@ class SceneCompiler {
     uint32_t medium_ref(const std::string& name, const std::string& where);
     void add_textures();
 
+    glm::vec3 mean_image_color(uint32_t image);
     MeasuredRef add_measured(const std::filesystem::path& file);
     void upload_measured();
 
     // scene_geometry.cpp
     void add_geometry();
+    uint64_t world_key(const std::vector<Box>& shape_bounds) const;
     std::vector<Box> shape_bounds(const std::vector<uint32_t>& refs);
     void upload_world();
     void add_receivers();
@@ -83,6 +87,7 @@ class SceneCompiler {
     void add_lights();
     void drop_dark_triangles(std::vector<uint32_t>& primitives);
     void measure_lights();
+    void name_lights(const std::map<uint32_t, uint32_t>& positions);
     std::vector<LightBounds> run_measurement();
     void scale_powers(std::vector<LightBounds>& bounds);
 
@@ -90,28 +95,32 @@ class SceneCompiler {
     void upload(const std::string& name, const std::vector<T>& data) {
         out_.buffers[name] = create_buffer(device_, data, name);
     }
+    // Of the memory's: the buffer that earlier scenes have, unless it was forgotten because the data changed.
+    template <class T>
+    void share(const std::string& name, const std::vector<T>& data) {
+        std::shared_ptr<Buffer>& buffer = memory_.buffers[name];
+        if (!buffer) buffer = std::make_shared<Buffer>(create_buffer(device_, data, name));
+        out_.shared_buffers[name] = buffer;
+    }
 
     Device& device_;
     const SceneDescription& in_;
     const SceneOptions& options_;
+    SceneMemory& memory_;
     unsigned threads_;
     Scene out_;
     RecordResolver resolver_;
     std::map<Interface, RecordBuffer> records_;
     std::vector<TextureUse> textures_;
-    std::vector<glm::uvec4> environment_texels_;  // floats, as bits
     std::vector<DensityGridRecord> grids_;
     std::vector<glm::dmat4> grid_placements_;  // world_from_lattice
-    DensityBricks density_bricks_;
-    MeasuredBsdf measured_;  // of all files, one after the other
-    std::map<std::filesystem::path, MeasuredRef> measured_files_;
+    bool uses_measured_ = false;
     std::vector<MaterialRecord> materials_;
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
-    World world_;
-    std::map<std::string, uint32_t> phases_;  // RecordRefs, by their places in the scene
-    std::vector<uint32_t> lights_;            // RecordRefs
-    uint32_t first_area_light_ = 0;           // in lights_, before they are sorted
-    std::vector<uint32_t> area_primitives_;   // of each area light
+    std::map<std::string, uint32_t> phases_;                       // RecordRefs, by their places in the scene
+    std::vector<uint32_t> lights_;                                 // RecordRefs
+    uint32_t first_area_light_ = 0;                                // in lights_, before they are sorted
+    std::vector<uint32_t> area_primitives_;                        // of each area light
 };
 
 }  // namespace etendue

@@ -19,16 +19,52 @@ void SceneCompiler::add_geometry() {
     for (const PlacedObject& shape : in_.shapes)
         shapes.push_back(add_record(Interface::geometry, shape.object));
     const auto refs = references(Interface::geometry, shapes);
-    world_ = build_world(in_, shape_bounds(refs), refs, threads_, out_.features);
-    UnrolledTraversal unrolled;
-    if (out_.features.body_count == 0) unrolled = unroll_traversal(world_, in_);
-    out_.features.unrolled_traversal = !unrolled.glsl.empty();
-    out_.sources.generated["generated/unrolled_traversal.glsl"] = unrolled.glsl;
-    out_.center = world_.center;
-    out_.radius = world_.bounds.empty() ? 0.0f : 0.5f * glm::length(world_.bounds.hi - world_.bounds.lo);
-    out_.triangles = world_.triangles, out_.instances = world_.instances, out_.shapes = in_.shapes.size();
-    out_.bvh_seconds = world_.statistics.seconds, out_.bvh_cost = world_.statistics.sah_cost;
-    out_.bvh_depth = world_.statistics.depth;
+    const std::vector<Box> bounds = shape_bounds(refs);
+    const uint64_t key = world_key(bounds);
+    World& world = memory_.world;
+    if (key != memory_.world_key) {
+        memory_.world_key = 0;
+        for (const char* name : {"Nodes", "Primitives", "Vertices", "TriangleIndices", "Transforms"})
+            memory_.buffers.erase(name);
+        memory_.world_features = {};
+        memory_.light_positions.clear();
+        world = build_world(in_, bounds, refs, threads_, memory_.world_features);
+        memory_.unrolled_traversal.clear();
+        if (out_.features.body_count == 0) memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
+        memory_.world_key = key;
+    }
+    out_.features.triangles = memory_.world_features.triangles;
+    out_.features.shapes = memory_.world_features.shapes;
+    out_.features.instances = memory_.world_features.instances;
+    out_.features.vertex_attributes = memory_.world_features.vertex_attributes;
+    out_.features.unrolled_traversal = !memory_.unrolled_traversal.empty();
+    out_.sources.generated["generated/unrolled_traversal.glsl"] = memory_.unrolled_traversal;
+    out_.center = world.center;
+    out_.radius = world.bounds.empty() ? 0.0f : 0.5f * glm::length(world.bounds.hi - world.bounds.lo);
+    out_.triangles = world.triangles, out_.instances = world.instances, out_.shapes = in_.shapes.size();
+    out_.bvh_seconds = world.statistics.seconds, out_.bvh_cost = world.statistics.sah_cost;
+    out_.bvh_depth = world.statistics.depth;
+}
+
+// Of all that the world depends on but the meshes themselves.
+uint64_t SceneCompiler::world_key(const std::vector<Box>& shape_bounds) const {
+    uint64_t key = hash_text(out_.features.body_count == 0 ? "" : "bodies");
+    const auto add = [&](const auto& value) {
+        key = hash_text({reinterpret_cast<const char*>(&value), sizeof value}, key);
+    };
+    for (const std::byte b : records_.at(Interface::geometry).bytes()) add(b);
+    for (const Box& box : shape_bounds) add(box);
+    for (const PlacedObject& shape : in_.shapes) {
+        key = hash_text(shape.object.class_name, key);
+        add(shape.world_from_local);
+        add(shape.material);
+    }
+    for (const MeshInstance& instance : in_.instances) {
+        add(instance.mesh);
+        add(instance.world_from_local);
+    }
+    for (const MaterialDescription& m : in_.materials) add(m.emission.has_value());
+    return key;
 }
 
 // The classes themselves say how large their objects are: on the device, so that a class needs no host code.
@@ -47,11 +83,11 @@ std::vector<Box> SceneCompiler::shape_bounds(const std::vector<uint32_t>& refs) 
 }
 
 void SceneCompiler::upload_world() {
-    upload("Nodes", world_.nodes);
-    upload("Primitives", world_.primitives);
-    upload("Vertices", world_.vertices);
-    upload("TriangleIndices", world_.triangle_indices);
-    upload("Transforms", world_.transforms);
+    share("Nodes", memory_.world.nodes);
+    share("Primitives", memory_.world.primitives);
+    share("Vertices", memory_.world.vertices);
+    share("TriangleIndices", memory_.world.triangle_indices);
+    share("Transforms", memory_.world.transforms);
 }
 
 void SceneCompiler::add_receivers() {

@@ -1,9 +1,10 @@
-// Densities that media of the class grid refer to.
+// Files that light comes from and that media of the class grid have their densities from.
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
 #include "host/error.h"
+#include "host/scene/image_file.h"
 #include "host/scene/scene_compiler.h"
 
 namespace etendue {
@@ -41,6 +42,17 @@ glm::dmat4 placement(const json& object, const std::string& place) {
 
 }  // namespace
 
+EnvironmentMapRef SceneCompiler::add_environment_map(const std::filesystem::path& file) {
+    const auto known = memory_.environment_maps.find(file);
+    if (known != memory_.environment_maps.end()) return known->second;
+    EnvironmentMap map = build_environment_map(read_image_file(file));
+    std::vector<glm::uvec4>& all = memory_.environment_texels;
+    map.ref.first = uint32_t(all.size());
+    memory_.buffers.erase("EnvironmentTexels");
+    all.insert(all.end(), map.texels.begin(), map.texels.end());
+    return memory_.environment_maps[file] = map.ref;
+}
+
 uint32_t SceneCompiler::add_grid(const json& value, const std::string& where) {
     const std::string place = message_place(in_, where);
     const json object = value.is_string() ? json{{"name", value}} : value;
@@ -54,12 +66,20 @@ uint32_t SceneCompiler::add_grid(const json& value, const std::string& where) {
             fail_input("{}/{}: unknown; allowed: name, grid, translation, rotation, scale", place, key);
     if (object.contains("grid") && !object["grid"].is_string()) fail_input("{}/grid: allowed: a name", place);
     const std::filesystem::path file = object["name"].get<std::string>();
-    const DensityLattice lattice =
-        read_density_file(file.is_absolute() ? file : in_.folder / file, object.value("grid", ""));
-    const glm::dmat4 world_from_lattice = placement(object, place) * lattice.world_from_lattice;
+    const auto key = std::pair(file.is_absolute() ? file : in_.folder / file, object.value("grid", ""));
+    auto known = memory_.density_files.find(key);
+    if (known == memory_.density_files.end()) {
+        const DensityLattice lattice = read_density_file(key.first, key.second);
+        memory_.buffers.erase("DensityBricks"), memory_.buffers.erase("DensityValues");
+        const DensityGridRecord record = add_bricks(memory_.density_bricks, lattice, file.string());
+        known =
+            memory_.density_files.emplace(key, SceneMemory::DensityFile{record, lattice.world_from_lattice})
+                .first;
+    }
+    const glm::dmat4 world_from_lattice = placement(object, place) * known->second.world_from_lattice;
     if (!(std::abs(glm::determinant(glm::dmat3(world_from_lattice))) > 0))
         fail_input("{}: the transform of the density squashes space flat", place);
-    grids_.push_back(add_bricks(density_bricks_, lattice, file.string()));
+    grids_.push_back(known->second.record);
     grid_placements_.push_back(world_from_lattice);
     return uint32_t(grids_.size() - 1);
 }
@@ -71,8 +91,8 @@ void SceneCompiler::upload_grids() {
         for (int c = 0; c < 4; ++c) grids_[i].lattice_from_world[c] = glm::vec3(m[c]);
     }
     upload("DensityGrids", grids_);
-    upload("DensityBricks", density_bricks_.bricks);
-    upload("DensityValues", density_bricks_.values);
+    share("DensityBricks", memory_.density_bricks.bricks);
+    share("DensityValues", memory_.density_bricks.values);
 }
 
 }  // namespace etendue

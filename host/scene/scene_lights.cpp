@@ -36,8 +36,8 @@ void SceneCompiler::add_lights() {
         const Added added = add_record(Interface::light, light.object, recentred(light.world_from_local));
         finite.push_back(added);  // sorted by what measure_lights finds
     }
-    for (uint32_t i = 0; i < world_.world_primitives; ++i) {
-        const PrimitiveRecord& p = world_.primitives[i];
+    for (uint32_t i = 0; i < memory_.world.world_primitives; ++i) {
+        const PrimitiveRecord& p = memory_.world.primitives[i];
         const glm::vec3 e = materials_[p.material].emission.rgb;
         if (primitive_kind(p) != PrimitiveKind::instance && (e.x > 0 || e.y > 0 || e.z > 0))
             area_primitives_.push_back(i);
@@ -47,7 +47,7 @@ void SceneCompiler::add_lights() {
     if (!area_primitives_.empty()) {
         const ClassInfo& info = use_class(Interface::light, {"area", nlohmann::json::object(), ""});
         for (uint32_t i : area_primitives_) {
-            records_[Interface::light].add(info, area_record(info, i, world_.primitives[i].material));
+            records_[Interface::light].add(info, area_record(info, i, memory_.world.primitives[i].material));
             area.push_back({&info, uint32_t(area.size())});
         }
     }
@@ -63,21 +63,32 @@ void SceneCompiler::add_lights() {
 
 // Triangles that an emissive texture leaves dark are no lights.
 void SceneCompiler::drop_dark_triangles(std::vector<uint32_t>& primitives) {
+    uint64_t key = memory_.world_key;
+    for (uint32_t i : primitives) {
+        const uint32_t words[] = {i, materials_[memory_.world.primitives[i].material].emission_texture};
+        key = hash_text({reinterpret_cast<const char*>(words), sizeof words}, key);
+    }
+    if (key == memory_.lit.key && textures_ == memory_.lit.textures) {
+        primitives = memory_.lit.primitives;
+        return;
+    }
     std::map<uint32_t, EmissionTexture> textures;  // by index of the Texture
     std::erase_if(primitives, [&](uint32_t i) {
-        const PrimitiveRecord& p = world_.primitives[i];
+        const PrimitiveRecord& p = memory_.world.primitives[i];
         const uint32_t index = materials_[p.material].emission_texture;
         if (index == no_record || primitive_kind(p) != PrimitiveKind::triangle ||
-            world_.triangle_indices.empty())
+            memory_.world.triangle_indices.empty())
             return false;
         const TextureUse& use = textures_[index];
         const EmissionTexture& texture =
             textures.try_emplace(index, in_.images[use.image], use).first->second;
-        const glm::uvec3 t = world_.triangle_indices[p.attributes & 0x3FFFFFFFu];
-        const VertexRecord &a = world_.vertices[t.x], &b = world_.vertices[t.y], &c = world_.vertices[t.z];
+        const glm::uvec3 t = memory_.world.triangle_indices[p.attributes & 0x3FFFFFFFu];
+        const VertexRecord &a = memory_.world.vertices[t.x], &b = memory_.world.vertices[t.y],
+                           &c = memory_.world.vertices[t.z];
         const glm::vec2 uv0[3] = {a.uv0, b.uv0, c.uv0}, uv1[3] = {a.uv1, b.uv1, c.uv1};
         return texture.is_dark(uv0, uv1);
     });
+    memory_.lit = {key, textures_, primitives};
 }
 
 // Power and extent of every light, found out by the classes on the device; then the order of the list, the
@@ -85,7 +96,7 @@ void SceneCompiler::drop_dark_triangles(std::vector<uint32_t>& primitives) {
 void SceneCompiler::measure_lights() {
     for (const InterfaceInfo& interface : all_interfaces())
         upload(interface.buffer, records_[interface.interface].bytes());
-    upload("EnvironmentTexels", environment_texels_);
+    share("EnvironmentTexels", memory_.environment_texels);
     upload("Materials", materials_);
     upload_world();
     upload("Lights", lights_);
@@ -93,6 +104,7 @@ void SceneCompiler::measure_lights() {
         upload("LightNodes", std::vector<uint32_t>());
         upload("LightTrails", std::vector<uint32_t>());
         upload("LightEmission", std::vector<EmissionChoice>());
+        name_lights({});
         return;
     }
     std::vector<LightBounds> bounds = run_measurement();
@@ -104,14 +116,14 @@ void SceneCompiler::measure_lights() {
     std::vector<uint32_t> sorted_lights;
     std::vector<LightBounds> sorted_bounds;
     std::vector<double> powers;
+    std::map<uint32_t, uint32_t> positions;
     for (uint32_t position = 0; position < order.size(); ++position) {
         const uint32_t i = order[position];
         sorted_lights.push_back(lights_[i]);
         sorted_bounds.push_back(bounds[i]);
         powers.push_back(bounds[i].power);
         out_.power += bounds[i].power;
-        if (i >= first_area_light_)
-            world_.primitives[area_primitives_[i - first_area_light_]].light = position;
+        if (i >= first_area_light_) positions[area_primitives_[i - first_area_light_]] = position;
     }
     const LightTree tree = build_light_tree(sorted_bounds);
     out_.features.light_tree = tree.is_tree;
@@ -120,8 +132,24 @@ void SceneCompiler::measure_lights() {
     upload("LightNodes", tree.nodes);
     upload("LightTrails", tree.trails);
     upload("LightEmission", build_emission_choices(powers));
-    out_.buffers["Primitives"].write(world_.primitives.data(),
-                                     world_.primitives.size() * sizeof(PrimitiveRecord));
+    name_lights(positions);
+}
+
+// In the primitives, whose buffer stays if all are as in the scene before.
+void SceneCompiler::name_lights(const std::map<uint32_t, uint32_t>& positions) {
+    if (positions == memory_.light_positions) return;
+    World& world = memory_.world;
+    for (const auto& [primitive, position] : memory_.light_positions)
+        world.primitives[primitive].light = no_record;
+    for (const auto& [primitive, position] : positions) world.primitives[primitive].light = position;
+    memory_.light_positions = positions;
+    out_.shared_buffers.erase("Primitives");
+    std::shared_ptr<Buffer>& buffer = memory_.buffers["Primitives"];
+    if (buffer.use_count() == 1)
+        buffer->write(world.primitives.data(), world.primitives.size() * sizeof(PrimitiveRecord));
+    else
+        buffer = nullptr;
+    share("Primitives", world.primitives);
 }
 
 std::vector<LightBounds> SceneCompiler::run_measurement() {
@@ -135,7 +163,7 @@ void SceneCompiler::scale_powers(std::vector<LightBounds>& bounds) {
     using Quantity = EmissionDescription::Quantity;
     std::vector<double> totals(materials_.size());
     for (size_t i = 0; i < area_primitives_.size(); ++i)
-        totals[world_.primitives[area_primitives_[i]].material] += bounds[first_area_light_ + i].power;
+        totals[memory_.world.primitives[area_primitives_[i]].material] += bounds[first_area_light_ + i].power;
     std::vector<float> scales(materials_.size(), 1.0f);
     bool changed = false;
     for (size_t m = 0; m < materials_.size(); ++m) {
@@ -150,7 +178,7 @@ void SceneCompiler::scale_powers(std::vector<LightBounds>& bounds) {
     }
     if (!changed) return;
     for (size_t i = 0; i < area_primitives_.size(); ++i)
-        bounds[first_area_light_ + i].power *= scales[world_.primitives[area_primitives_[i]].material];
+        bounds[first_area_light_ + i].power *= scales[memory_.world.primitives[area_primitives_[i]].material];
     upload("Materials", materials_);
 }
 

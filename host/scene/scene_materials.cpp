@@ -58,19 +58,25 @@ void SceneCompiler::add_materials() {
 }
 
 MeasuredRef SceneCompiler::add_measured(const std::filesystem::path& file) {
-    const auto [place, is_new] = measured_files_.try_emplace(file.is_absolute() ? file : in_.folder / file);
-    if (is_new) {
-        const MeasuredBsdf bsdf = read_measured_bsdf(place->first);
-        place->second = append(measured_, bsdf);
-        place->second.place_table = add_spectrum(bsdf.place, SpectralKind::factor);
+    const std::filesystem::path path = file.is_absolute() ? file : in_.folder / file;
+    auto known = memory_.measured_files.find(path);
+    if (known == memory_.measured_files.end()) {
+        const MeasuredBsdf bsdf = read_measured_bsdf(path);
+        for (const char* name : {"MeasuredPoints", "MeasuredColors", "MeasuredSpectra"})
+            memory_.buffers.erase(name);
+        const MeasuredRef ref = append(memory_.measured, bsdf);
+        known = memory_.measured_files.emplace(path, SceneMemory::MeasuredFile{ref, bsdf.place}).first;
     }
-    return place->second;
+    uses_measured_ = true;
+    MeasuredRef ref = known->second.ref;
+    ref.place_table = add_spectrum(known->second.place, SpectralKind::factor);
+    return ref;
 }
 
 void SceneCompiler::upload_measured() {
-    if (measured_files_.empty()) return;
-    upload("MeasuredPoints", measured_.points);
-    upload("MeasuredColors", measured_.colors);
+    if (!uses_measured_) return;
+    share("MeasuredPoints", memory_.measured.points);
+    share("MeasuredColors", memory_.measured.colors);
 }
 
 // Materials with a priority by their place in the order of priorities; the first of several of the same.
@@ -122,18 +128,30 @@ void SceneCompiler::fill_emission(const EmissionDescription& e, MaterialRecord& 
     record.emission = record.mean_emission = {value.rgb, add_spectrum(value, SpectralKind::radiance)};
     if (e.texture.is_object()) {
         record.emission_texture = resolver_.texture(e.texture, true, e.where);
-        record.mean_emission.rgb *= mean_color(in_.images[textures_[record.emission_texture].image]);
+        record.mean_emission.rgb *= mean_image_color(textures_[record.emission_texture].image);
     }
+}
+
+glm::vec3 SceneCompiler::mean_image_color(uint32_t image) {
+    const auto [place, is_new] = memory_.mean_colors.try_emplace(image);
+    if (is_new) place->second = mean_color(in_.images[image]);
+    return place->second;
 }
 
 void SceneCompiler::add_textures() {
     out_.features.textures = !textures_.empty();
     out_.textures = textures_.size();
     if (textures_.empty()) return;
-    const PackedTextures packed = pack_textures(in_.images, textures_);
-    out_.features.texture_formats = packed.formats;
-    upload("Texels", packed.texels);
-    upload("Textures", packed.textures);
+    PackedTextures packed;
+    if (textures_ != memory_.texture_uses || !memory_.buffers["Texels"]) {
+        memory_.buffers.erase("Texels"), memory_.buffers.erase("Textures");
+        packed = pack_textures(in_.images, textures_);
+        memory_.texture_uses = textures_;
+        memory_.texture_formats = packed.formats;
+    }
+    out_.features.texture_formats = memory_.texture_formats;
+    share("Texels", packed.texels);
+    share("Textures", packed.textures);
 }
 
 }  // namespace etendue

@@ -60,8 +60,9 @@ void SceneCompiler::choose_color() {
         const SpectralTable table = value.as_table(kind);
         out_.spectra.push_back(kind == SpectralKind::radiance ? table * radiance_unit : table);
     }
-    if (!measured_files_.empty()) upload("MeasuredSpectra", measured_.spectra);
-    out_.features.spectrum_count = uint32_t(out_.spectra.size());
+    if (uses_measured_) share("MeasuredSpectra", memory_.measured.spectra);
+    out_.features.spectrum_count =
+        uint32_t((out_.spectra.size() + 15) / 16 * 16);  // so that it seldom changes
 }
 
 }  // namespace etendue

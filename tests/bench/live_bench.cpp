@@ -12,6 +12,7 @@
 #include "host/gpu/shader_compiler.h"
 #include "host/render/renderer.h"
 #include "host/scene/gltf.h"
+#include "host/scene/live_scene.h"
 
 using namespace etendue;
 
@@ -31,6 +32,43 @@ void report_often(const char* what, const std::function<void()>& work) {
     for (int i = 0; i < 7; ++i) times.push_back(milliseconds(work));
     std::sort(times.begin(), times.end());
     report(what, times[times.size() / 2]);
+}
+
+// The value as a little more than it is; null where it is no number or colour.
+nlohmann::json nudged(const LiveParameter& p) {
+    const auto more = [&](double x) { return p.info.in_range(1.01 * x + 0.01) ? 1.01 * x + 0.01 : 0.9 * x; };
+    if (p.value.is_number() && p.info.member.type != "uint") return more(p.value.get<double>());
+    if (!p.value.is_array() || !p.value[0].is_number()) return nullptr;
+    nlohmann::json result = nlohmann::json::array();
+    for (const auto& x : p.value) result.push_back(more(x.get<double>()));
+    return result;
+}
+
+void report_edits(Device& device, LiveScene& live, const RenderSettings& settings) {
+    std::set<std::pair<LiveObject::Part, std::string>> seen;
+    for (const LiveObject& object : live.objects())
+        for (LiveParameter p : object.parameters) {
+            if (nudged(p).is_null() || object.part == LiveObject::Part::receiver) continue;
+            if (!seen.emplace(object.part, object.class_name).second) break;
+            for (int turn = 0; turn < 2; ++turn) {  // the first may compile
+                p.value = nudged(p);
+                std::shared_ptr<Scene> next;
+                std::unique_ptr<Renderer> renderer;
+                const double scene_ms =
+                    milliseconds([&] { next = live.set_parameter(object, p.info.member.name, p.value); });
+                const double renderer_ms =
+                    milliseconds([&] { renderer = std::make_unique<Renderer>(device, *next, settings); });
+                const auto compiled = std::count_if(next->kernels.begin(), next->kernels.end(),
+                                                    [](const KernelReport& k) { return !k.from_store; });
+                live.accept();
+                report(fmt::format("{} {}: scene ({} new kernels)", object.class_name, p.info.member.name,
+                                   compiled)
+                           .c_str(),
+                       scene_ms);
+                report("    and renderer, 512 x 512", renderer_ms);
+            }
+            break;
+        }
 }
 
 }  // namespace
@@ -79,6 +117,11 @@ int main(int argc, char** argv) try {
         report_often(fmt::format("restart and a pass, {0} x {0}", size).c_str(),
                      [&] { other->restart(1), other->render_passes(1); });
     }
+    settings.width = settings.height = 512;
+    LiveScene live(*device, argv[1], options);
+    report_edits(*device, live, settings);
+    std::shared_ptr<Scene> next;
+    report_often("the file read again", [&] { next = live.reload(); });
     return 0;
 } catch (const std::exception& error) {
     fmt::print(stderr, "live_bench: {}\n", error.what());

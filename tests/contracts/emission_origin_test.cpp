@@ -55,7 +55,8 @@ TEST_CASE("emission: origins lie within their error of the surface, and rays do 
     for (double far : {20.0, 5000.0}) {
         EmissionProbe probe(shapes_scene(far));
         REQUIRE(probe.scene().lights == 16);
-        const auto transforms = probe.scene().buffers.at("Transforms").read_array<TransformRecord>(16);
+        const auto transforms =
+            probe.scene().shared_buffers.at("Transforms")->read_array<TransformRecord>(16);
         double worst[16] = {};
         uint32_t met = 0, i = 0;
         for (const ProbedRay& r : probe.emit(1 << 18, 4)) {

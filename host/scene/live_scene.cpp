@@ -1,0 +1,284 @@
+#include "host/scene/live_scene.h"
+
+#include <algorithm>
+
+#include "host/error.h"
+#include "host/scene/gltf.h"
+
+namespace etendue {
+namespace {
+
+using nlohmann::json;
+using Part = LiveObject::Part;
+using Quantity = EmissionDescription::Quantity;
+
+struct QuantityInfo {
+    Quantity quantity;
+    const char *name, *unit, *text;
+};
+constexpr QuantityInfo quantities[] = {
+    {Quantity::radiance, "radiance", "cd/m²", "Radiance; 1 = 1 cd/m² for white."},
+    {Quantity::luminance, "luminance", "cd/m²", "Luminance; the spectrum gives the colour."},
+    {Quantity::power, "power", "lm", "Of everything that has the material; the spectrum gives the colour."},
+    {Quantity::flux, "flux", "lm", "Of everything that has the material; the spectrum gives the colour."}};
+
+Parameter spectral_parameter(const char* name, const char* unit, const char* text) {
+    Parameter p;
+    p.member.name = name, p.member.type = "SpectrumRef";
+    p.from_scene = true;
+    p.lo = 0, p.lo_open = false;
+    p.unit = unit, p.text = text;
+    return p;
+}
+
+LiveObject emission_object(const MaterialDescription& material, uint32_t index) {
+    LiveObject object{Part::emission, index, material.name, "", {}};
+    for (const QuantityInfo& q : quantities)
+        if (q.quantity == material.emission->quantity)
+            object.parameters.push_back(
+                {spectral_parameter(q.name, q.unit, q.text), material.emission->value});
+    object.parameters.push_back(
+        {spectral_parameter("spectrum", "", "Multiplies the value."), material.emission->spectrum});
+    return object;
+}
+
+void set_emission(EmissionDescription& emission, const std::string& name, const json& value) {
+    if (name == "spectrum") {
+        emission.spectrum = value;
+        return;
+    }
+    const auto q =
+        std::find_if(std::begin(quantities), std::end(quantities), [&](auto& q) { return name == q.name; });
+    if (q == std::end(quantities))
+        fail_input("emission: there is no {}; allowed: radiance, luminance, power, flux, spectrum", name);
+    emission.quantity = q->quantity;
+    emission.value = value.is_null() ? json(0.0) : value;
+}
+
+LiveObject described(ClassRegistry& registry, Part part, uint32_t index, const std::string& name,
+                     const std::string& class_name, const json& parameters) {
+    LiveObject object{part, index, name, class_name, {}};
+    const ClassInfo* info = registry.find(interface_of(part), class_name);
+    for (const Parameter& p : info->parameters)
+        if (p.from_scene && p.member.type != "PhaseRef")
+            object.parameters.push_back({p, parameters.value(p.member.name, p.default_value)});
+    return object;
+}
+
+// The parameter of a medium that is a phase function; null = its class has none.
+const Parameter* phase_parameter(ClassRegistry& registry, const MediumDescription& medium) {
+    for (const Parameter& p : registry.find(Interface::medium, medium.medium.class_name)->parameters)
+        if (p.member.type == "PhaseRef") return &p;
+    return nullptr;
+}
+
+// {"class": name, parameter: value, …} of a medium's phase function.
+json phase_value(const MediumDescription& medium, const Parameter& p) {
+    return medium.medium.parameters.value(p.member.name, p.default_value);
+}
+
+ObjectDescription& edited(SceneObjects& scene, const LiveObject& object) {
+    switch (object.part) {
+        case Part::surface:
+            return scene.materials.at(object.index).surface;
+        case Part::medium:
+            return scene.media.at(object.index).medium;
+        case Part::geometry:
+            return scene.shapes.at(object.index).object;
+        case Part::light:
+            return scene.lights.at(object.index).object;
+        case Part::environment:
+            return scene.environment.value();
+        default:
+            fail_input("this object has no such value");
+    }
+}
+
+bool same_receivers(const SceneObjects& a, const SceneObjects& b) {
+    return std::equal(a.receivers.begin(), a.receivers.end(), b.receivers.begin(), b.receivers.end(),
+                      [](const PlacedObject& x, const PlacedObject& y) {
+                          return x.name == y.name && x.object.class_name == y.object.class_name &&
+                                 x.object.parameters == y.object.parameters &&
+                                 x.world_from_local == y.world_from_local;
+                      });
+}
+
+}  // namespace
+
+Interface interface_of(Part part) {
+    switch (part) {
+        case Part::surface:
+            return Interface::surface;
+        case Part::medium:
+            return Interface::medium;
+        case Part::phase:
+            return Interface::phase;
+        case Part::geometry:
+            return Interface::geometry;
+        case Part::receiver:
+            return Interface::receiver;
+        default:
+            return Interface::light;
+    }
+}
+
+LiveScene::LiveScene(Device& device, std::filesystem::path file, SceneOptions options)
+    : device_(device), file_(std::move(file)), options_(std::move(options)) {
+    compile(import_gltf(file_), std::make_shared<SceneMemory>());
+    accept();
+}
+
+std::shared_ptr<Scene> LiveScene::compile(SceneDescription description, std::shared_ptr<SceneMemory> memory) {
+    candidate_.reset();
+    auto next = std::make_shared<Scene>(compile_scene(device_, description, options_, *memory));
+    if (scene_ && same_receivers(description, description_)) keep_receivers(*next);
+    candidate_ = Candidate{next, {}, std::move(description), std::move(memory)};
+    return next;
+}
+
+std::shared_ptr<Scene> LiveScene::compile(SceneObjects objects) {
+    candidate_.reset();
+    SceneObjects& current = description_;  // meshes and images are not copied
+    std::swap(current, objects);
+    std::shared_ptr<Scene> next;
+    try {
+        next = std::make_shared<Scene>(compile_scene(device_, description_, options_, *memory_));
+    } catch (...) {
+        std::swap(current, objects);
+        throw;
+    }
+    std::swap(current, objects);
+    keep_receivers(*next);
+    candidate_ = Candidate{next, std::move(objects), {}, memory_};
+    return next;
+}
+
+// Where they were moved to.
+void LiveScene::keep_receivers(Scene& next) const {
+    for (size_t i = 0; i < std::min(scene_->receivers.size(), next.receivers.size()); ++i) {
+        const Receiver &now = scene_->receivers[i], &fresh = next.receivers[i];
+        if (now.world_from_local != fresh.world_from_local || now.parameters != fresh.parameters)
+            move_receiver(next, i, now.world_from_local, now.parameters);
+    }
+}
+
+void LiveScene::accept() {
+    if (!candidate_) return;
+    if (candidate_->description)
+        description_ = std::move(*candidate_->description);
+    else
+        static_cast<SceneObjects&>(description_) = std::move(candidate_->objects);
+    memory_ = std::move(candidate_->memory);
+    scene_ = std::move(candidate_->scene);
+    candidate_.reset();
+}
+
+std::vector<LiveObject> LiveScene::objects() const {
+    ClassRegistry& registry = *scene_->registry;
+    std::vector<LiveObject> objects;
+    const auto add = [&](Part part, size_t index, const std::string& name, const ObjectDescription& object) {
+        objects.push_back(
+            described(registry, part, uint32_t(index), name, object.class_name, object.parameters));
+    };
+    for (size_t i = 0; i < description_.materials.size(); ++i) {
+        const MaterialDescription& m = description_.materials[i];
+        add(Part::surface, i, m.name, m.surface);
+        if (m.emission) objects.push_back(emission_object(m, uint32_t(i)));
+    }
+    for (size_t i = 0; i < description_.media.size(); ++i) {
+        const MediumDescription& m = description_.media[i];
+        add(Part::medium, i, m.name, m.medium);
+        if (const Parameter* p = phase_parameter(registry, m)) {
+            json value = phase_value(m, *p);
+            const std::string class_name = value.at("class");
+            value.erase("class");
+            add(Part::phase, i, m.name, {class_name, value, ""});
+        }
+    }
+    for (size_t i = 0; i < description_.shapes.size(); ++i)
+        add(Part::geometry, i, description_.shapes[i].name, description_.shapes[i].object);
+    for (size_t i = 0; i < description_.lights.size(); ++i)
+        add(Part::light, i, description_.lights[i].name, description_.lights[i].object);
+    if (description_.environment && options_.environment.empty())
+        add(Part::environment, 0, "", *description_.environment);
+    for (size_t i = 0; i < scene_->receivers.size(); ++i) {
+        const Receiver& r = scene_->receivers[i];
+        add(Part::receiver, i, r.name, {r.info->name, r.parameters, ""});
+    }
+    return objects;
+}
+
+std::shared_ptr<Scene> LiveScene::set_parameter(const LiveObject& object, const std::string& name,
+                                                const json& value) {
+    const auto set = [&](json& parameters) {
+        if (value.is_null())
+            parameters.erase(name);
+        else
+            parameters[name] = value;
+    };
+    if (object.part == Part::receiver) {
+        Receiver& receiver = scene_->receivers.at(object.index);
+        json parameters = receiver.parameters;
+        set(parameters);
+        move_receiver(*scene_, object.index, receiver.world_from_local, parameters);
+        return scene_;
+    }
+    SceneObjects next = description_;
+    if (object.part == Part::emission) {
+        set_emission(next.materials.at(object.index).emission.value(), name, value);
+    } else if (object.part == Part::phase) {
+        MediumDescription& medium = next.media.at(object.index);
+        const Parameter& p = *phase_parameter(*scene_->registry, medium);
+        json phase = phase_value(medium, p);
+        set(phase);
+        medium.medium.parameters[p.member.name] = phase;
+    } else {
+        set(edited(next, object).parameters);
+    }
+    // A value that is changed once will be changed again: it costs one compilation, not one for each of the
+    // values that kernels would otherwise take as constants.
+    if (!object.class_name.empty())
+        if (const ClassInfo* info = scene_->registry->find(interface_of(object.part), object.class_name))
+            options_.varying.insert(member_path(*info, name));
+    return compile(std::move(next));
+}
+
+std::shared_ptr<Scene> LiveScene::set_class(const LiveObject& object, const std::string& class_name,
+                                            const json& parameters) {
+    SceneObjects next = description_;
+    if (object.part == Part::phase) {
+        MediumDescription& medium = next.media.at(object.index);
+        json phase = parameters;
+        phase["class"] = class_name;
+        medium.medium.parameters[phase_parameter(*scene_->registry, medium)->member.name] = phase;
+    } else {
+        ObjectDescription& description = edited(next, object);
+        description.class_name = class_name;
+        description.parameters = parameters;
+    }
+    return compile(std::move(next));
+}
+
+std::shared_ptr<Scene> LiveScene::place(const LiveObject& object, const glm::dmat4& world_from_local) {
+    if (object.part == Part::receiver) {
+        move_receiver(*scene_, object.index, world_from_local, scene_->receivers.at(object.index).parameters);
+        return scene_;
+    }
+    SceneObjects next = description_;
+    if (object.part == Part::geometry)
+        next.shapes.at(object.index).world_from_local = world_from_local;
+    else if (object.part == Part::light)
+        next.lights.at(object.index).world_from_local = world_from_local;
+    else
+        fail_input("only geometries, lights and receivers have a place");
+    return compile(std::move(next));
+}
+
+std::shared_ptr<Scene> LiveScene::reload() {
+    auto memory = std::make_shared<SceneMemory>();
+    memory->registry = memory_->registry;
+    memory->registry_key = memory_->registry_key;
+    return compile(import_gltf(file_), std::move(memory));
+}
+
+}  // namespace etendue

@@ -1,0 +1,63 @@
+// What the compilation of a scene leaves for the next one of the same scene with other parameters: the layout
+// of its classes, its world, its textures and files. Each part has a key and is made anew where that has
+// changed.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/gpu/buffer.h"
+#include "host/measured/measured_bsdf.h"
+#include "host/scene/classes.h"
+#include "host/scene/density_bricks.h"
+#include "host/scene/environment_map.h"
+#include "host/scene/features.h"
+#include "host/scene/texture_pack.h"
+#include "host/scene/world.h"
+
+namespace etendue {
+
+// Of one device, and of descriptions that share their meshes, images and textures.
+struct SceneMemory {
+    uint64_t registry_key = 0;  // of the shaders and the scene's own class files
+    std::shared_ptr<ClassRegistry> registry;
+
+    // Files that parameters name: the contents of all of them, one behind the other.
+    std::vector<glm::uvec4> environment_texels;  // floats, as bits
+    std::map<std::filesystem::path, EnvironmentMapRef> environment_maps;
+    DensityBricks density_bricks;
+    struct DensityFile {
+        DensityGridRecord record;
+        glm::dmat4 world_from_lattice;
+    };
+    std::map<std::pair<std::filesystem::path, std::string>, DensityFile> density_files;
+    MeasuredBsdf measured;
+    struct MeasuredFile {
+        MeasuredRef ref;
+        SpectralValue place;
+    };
+    std::map<std::filesystem::path, MeasuredFile> measured_files;
+
+    uint64_t world_key = 0;
+    World world;  // its lights are those of the last compilation
+    Features world_features;
+    std::string unrolled_traversal;
+    std::map<uint32_t, uint32_t> light_positions;  // of primitives, in the list of lights
+
+    std::vector<TextureUse> texture_uses;  // that the packed textures are of
+    uint32_t texture_formats = 0;
+    std::map<uint32_t, glm::vec3> mean_colors;  // of images
+    struct LitTriangles {                       // what drop_dark_triangles came to
+        uint64_t key = 0;
+        std::vector<TextureUse> textures;
+        std::vector<uint32_t> primitives;
+    } lit;
+
+    // Of all that: scenes share them, so what has changed gets a new buffer.
+    std::map<std::string, std::shared_ptr<Buffer>> buffers;
+};
+
+}  // namespace etendue

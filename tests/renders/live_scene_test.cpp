@@ -1,0 +1,235 @@
+// Scenes that are edited while they are rendered: a change shows what a scene file with the new values shows,
+// and compiles no more than that needs.
+#include "host/error.h"
+#include "host/gpu/shader_compiler.h"
+#include "host/scene/live_scene.h"
+#include "tests/support/render_probe.h"
+#include "tests/support/temporary_folder.h"
+
+using namespace etendue;
+using nlohmann::json;
+using Part = LiveObject::Part;
+
+namespace {
+
+struct Values {
+    json reflectance = {0.8, 0.5, 0.2}, roughness = 0.2, radiance = 3.0, intensity = 2.0, radius = 0.5;
+    json absorption = {0.2, 0.5, 1.0};
+};
+
+SceneBuilder room(const Values& v) {
+    SceneBuilder s;
+    s.medium("ink", {{"absorption", v.absorption}, {"ior", 1.3}});
+    s.rectangle(4, 4, s.lambertian(v.reflectance), at(0, 0, -2));
+    s.rectangle(1, 4, s.surface({{"class", "conductor"}, {"alpha", v.roughness}}), at(-1.5, 0, -1));
+    s.sphere(0.2, s.black_emitter(v.radiance), at(0.5, 0.6, -1.2));
+    const int ball = s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "ink"}});
+    s.shape({{"class", "sphere"}, {"radius", v.radius}}, ball, at(0, 0, 0));
+    s.light({{"type", "point"}, {"intensity", v.intensity}}, at(-0.5, 0.7, 0.5));
+    s.perspective(0.8, at(0, 0, 2.5));
+    s.transform({10, 20, -30}, 1);
+    return s;
+}
+
+SceneOptions test_options() {
+    SceneOptions options;
+    options.shaders = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    options.cache_folder = default_cache_folder();
+    return options;
+}
+
+std::vector<std::byte> film(Scene& scene, Algorithm algorithm = Algorithm::bidirectional) {
+    RenderSettings settings;
+    settings.width = 24, settings.height = 24;
+    settings.receiver = scene.receivers[0].ref;
+    settings.algorithm = algorithm;
+    Renderer renderer(test_device(), scene, settings);
+    renderer.render_passes(4);
+    return renderer.state().pixels;
+}
+
+std::vector<std::byte> film_of(const Values& values, const std::set<std::string>& varying = {}) {
+    SceneOptions options = test_options();
+    options.varying = varying;
+    Scene scene = compile_scene(test_device(), room(values).import(), options);
+    return film(scene);
+}
+
+const LiveObject& find(const std::vector<LiveObject>& objects, Part part, size_t nth = 0) {
+    for (const LiveObject& o : objects)
+        if (o.part == part && nth-- == 0) return o;
+    FAIL("no such object");
+    return objects[0];
+}
+
+std::string write(const TemporaryFolder& folder, const SceneBuilder& scene) {
+    write_text(folder / "scene.gltf", scene.document.dump());
+    return (folder / "scene.gltf").string();
+}
+
+size_t compiled(const Scene& scene) {
+    size_t count = 0;
+    for (const KernelReport& k : scene.kernels) count += !k.from_store;
+    return count;
+}
+
+}  // namespace
+
+TEST_CASE("an edited scene shows what a file with the new values shows") {
+    TemporaryFolder folder;
+    LiveScene live(test_device(), write(folder, room({})), test_options());
+    Values now;
+    CHECK(film(*live.scene()) == film_of(now));
+    std::set<std::string> varying;
+    const auto edit = [&](const LiveObject& object, const std::string& name, const json& value) {
+        const std::shared_ptr<Scene> next = live.set_parameter(object, name, value);
+        CHECK(next != live.scene());
+        live.accept();
+        CHECK(next == live.scene());
+        if (!object.class_name.empty())
+            varying.insert(std::string(interface_info(interface_of(object.part)).name) + "/" +
+                           object.class_name + "/" + name);
+        CAPTURE(name);
+        const std::vector<std::byte> shown = film(*next);
+        CHECK(shown == film_of(now, varying));
+        return compiled(*next);
+    };
+    film(*live.scene());
+    const auto objects = live.objects();
+    now.reflectance = {0.1, 0.6, 0.3};
+    CHECK(edit(find(objects, Part::surface, 0), "reflectance", now.reflectance) == 0);
+    now.roughness = 0.4;
+    CHECK(edit(find(objects, Part::surface, 1), "alpha", now.roughness) == 0);
+    now.roughness = 0;  // a smooth metal: kernels have known it as one that may be rough
+    CHECK(edit(find(objects, Part::surface, 1), "alpha", now.roughness) == 0);
+    now.radiance = {1, 2, 9};
+    CHECK(edit(find(objects, Part::emission), "radiance", now.radiance) == 0);
+    now.intensity = 7;
+    CHECK(edit(find(objects, Part::light), "intensity", 7) == 0);
+    now.absorption = {1, 0, 0};
+    CHECK(edit(find(objects, Part::medium), "absorption", now.absorption) == 0);
+    now.radius = 0.4;  // geometry stands in the kernels of so small a scene
+    CHECK(edit(find(objects, Part::geometry, 3), "radius", 0.4) > 0);
+    now.radius = 0.5;
+    CHECK(edit(find(objects, Part::geometry, 3), "radius", 0.5) == 0);  // as at first
+}
+
+TEST_CASE("new classes, places and media take effect, and receivers that were moved stay") {
+    TemporaryFolder folder;
+    LiveScene live(test_device(), write(folder, room({})), test_options());
+    const glm::dmat4 before = live.scene()->receivers[0].world_from_local;
+    glm::dmat4 moved = before;
+    moved[3].z -= 1;
+    const auto objects = live.objects();
+    CHECK(live.place(find(objects, Part::receiver), moved) == live.scene());
+    const std::vector<std::byte> seen = film(*live.scene());
+
+    const LiveObject& wall = find(objects, Part::surface);
+    live.set_class(wall, "conductor", {{"alpha", 0.3}});
+    live.accept();
+    CHECK(live.objects()[0].class_name == "conductor");
+    const std::vector<std::byte> of_metal = film(*live.scene());
+    CHECK(of_metal != seen);
+    CHECK(live.scene()->receivers[0].world_from_local == moved);
+
+    const LiveObject& lamp = find(objects, Part::light);
+    glm::dmat4 elsewhere = live.description().lights[0].world_from_local;
+    elsewhere[3].x += 0.9;
+    live.place(lamp, elsewhere);
+    live.accept();
+    CHECK(film(*live.scene()) != of_metal);
+
+    // Back to the file: all edits are forgotten, but the receiver stays.
+    live.reload();
+    live.accept();
+    CHECK(film(*live.scene()) == seen);
+    SceneBuilder other = room({});
+    other.document["nodes"].back()["translation"] = {0, 0, 4};
+    write(folder, other);
+    live.reload();
+    live.accept();
+    CHECK(live.scene()->receivers[0].world_from_local[3].z == before[3].z + 1.5);
+}
+
+TEST_CASE("what is wrong changes nothing and is told in the words of a scene file") {
+    TemporaryFolder folder;
+    const std::string file = write(folder, room({}));
+    LiveScene live(test_device(), file, test_options());
+    const auto objects = live.objects();
+    const std::shared_ptr<Scene> scene = live.scene();
+    const std::vector<std::byte> seen = film(*scene);
+    const auto message = [&](auto change) {
+        try {
+            change();
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string at = file + ": /materials/1/extensions/ETD_optics/surface";
+    const LiveObject& metal = find(objects, Part::surface, 1);
+    CHECK(message([&] { live.set_parameter(metal, "alpha", 2); }) ==
+          at + "/alpha: 2 is out of range; allowed: a number in [0, 1]");
+    CHECK(message([&] { live.set_parameter(metal, "roughness", 0.1); }).find("unknown parameter") !=
+          std::string::npos);
+    CHECK(message([&] {
+              live.set_class(metal, "velvet");
+          }).find(at + "/class: there is no surface class velvet") == 0);
+    CHECK(message([&] { live.set_parameter(find(objects, Part::emission), "radiance", -1); }) != "");
+    CHECK(message([&] { live.set_parameter(find(objects, Part::emission), "glow", 1); }) != "");
+    write_text(file, "{");
+    CHECK(message([&] { live.reload(); }).find("scene.gltf") != std::string::npos);
+    live.accept();  // of nothing
+    CHECK(live.scene() == scene);
+    CHECK(live.objects()[1].parameters[3].value == 0.2);
+    CHECK(film(*live.scene()) == seen);
+}
+
+TEST_CASE("objects are listed with what their classes know of their parameters") {
+    TemporaryFolder folder;
+    LiveScene live(test_device(), write(folder, room({})), test_options());
+    const auto objects = live.objects();
+    // Five materials, one of which emits, a medium with its phase function, four geometries, a light, a
+    // camera.
+    CHECK(objects.size() == 4 + 1 + 2 + 4 + 1 + 1);
+    const LiveObject& metal = find(objects, Part::surface, 1);
+    CHECK(metal.class_name == "conductor");
+    const LiveParameter& alpha = metal.parameters.at(3);
+    CHECK(alpha.info.member.name == "alpha");
+    CHECK(alpha.value == 0.2);
+    CHECK(alpha.info.range() == "[0, 1]");
+    CHECK(metal.parameters.at(4).value == false);  // multiscatter, by default
+    CHECK(find(objects, Part::emission).parameters.at(0).info.member.name == "radiance");
+    CHECK(find(objects, Part::phase).class_name == "isotropic");
+    CHECK(find(objects, Part::light).parameters.at(1).info.unit == "cd");
+}
+
+TEST_CASE("a broken shader is one line, and the scene before it stays") {
+    TemporaryFolder folder;
+    const std::filesystem::path shaders = folder / "shaders";
+    std::filesystem::copy(std::string(ETENDUE_SOURCE_DIR) + "/shaders", shaders,
+                          std::filesystem::copy_options::recursive);
+    SceneOptions options = test_options();
+    options.shaders = shaders;
+    LiveScene live(test_device(), write(folder, room({})), options);
+    const std::vector<std::byte> seen = film(*live.scene());
+    const std::string lambertian = read_text(shaders / "surfaces/lambertian.glsl");
+    write_text(shaders / "surfaces/lambertian.glsl", lambertian + "\nint x = ;\n");
+    std::string message;
+    try {
+        const std::shared_ptr<Scene> next = live.reload();
+        film(*next);
+        live.accept();
+    } catch (const Error& error) {
+        message = error.what();
+    }
+    CHECK(message.find("surfaces/lambertian.glsl:28: '' :  syntax error, unexpected SEMICOLON") == 0);
+    CHECK(film(*live.scene()) == seen);
+    // Whole again, but a darker surface.
+    std::string darker = lambertian;
+    const size_t at = darker.find("INV_PI");
+    REQUIRE(at != std::string::npos);
+    write_text(shaders / "surfaces/lambertian.glsl", darker.replace(at, 6, "0.5 * INV_PI"));
+    const std::shared_ptr<Scene> next = live.reload();
+    CHECK(film(*next) != seen);
+}
