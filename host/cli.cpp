@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "host/cli_values.h"
+#include "host/cli_view.h"
 #include "host/error.h"
 
 #ifndef ETENDUE_VERSION
@@ -99,17 +100,6 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     return render;
 }
 
-ColorMode parse_color(const std::string& text) {
-    return parse_choice<ColorMode>(
-        text, "--color",
-        {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
-}
-
-SampleSequence parse_sampler(const std::string& text) {
-    return parse_choice<SampleSequence>(
-        text, "--sampler", {{"sobol", SampleSequence::sobol}, {"independent", SampleSequence::independent}});
-}
-
 void finish_render(RenderOptions& options, const RenderArguments& arguments, std::string command_line) {
     if (options.scene.empty()) fail_input("SCENE is empty (see etendue render --help)");
     if (arguments.passes)
@@ -133,11 +123,7 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.polarization = parse_choice<PolarizationMode>(
         arguments.polarization, "--polarization",
         {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});
-    options.schedule = parse_choice<Schedule>(arguments.schedule, "--schedule",
-                                              {{"auto", Schedule::automatic},
-                                               {"fused", Schedule::fused},
-                                               {"wavefront", Schedule::wavefront},
-                                               {"by-class", Schedule::by_class}});
+    options.schedule = parse_schedule(arguments.schedule);
     if (options.output.empty()) options.output = default_output(options.scene);
     if (options.output.extension() != ".exr")
         fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
@@ -263,22 +249,25 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     std::optional<std::string> max_relmse;
     BenchOptions bench_options;
     BenchArguments bench_arguments;
+    ViewOptions view_options;
+    ViewArguments view_arguments;
     InspectOptions inspect_options;
     ClassesOptions classes_options;
     CLI::App* render = add_render(app, render_options, render_arguments);
     CLI::App* compare = add_compare(app, compare_options, max_relmse);
     CLI::App* bench = add_bench(app, bench_options, bench_arguments);
+    CLI::App* view = add_view(app, view_options, view_arguments);
     CLI::App* inspect = add_inspect(app, inspect_options);
     CLI::App* classes = add_classes(app, classes_options);
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
 
-    const auto commands = {render, compare, bench, inspect, classes, devices};
+    const auto commands = {render, view, compare, bench, inspect, classes, devices};
     std::string first = argc < 2 ? "" : argv[1];
     bool known = first.starts_with("-");
     for (CLI::App* command : commands) known = known || first == command->get_name();
     if (!known)
-        fail_input("{}; one of: render, compare, bench, inspect, classes, devices (see etendue --help)",
+        fail_input("{}; one of: render, view, compare, bench, inspect, classes, devices (see etendue --help)",
                    argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
 
     CLI::App* chosen = &app;
@@ -309,6 +298,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     if (bench->parsed()) {
         finish_bench(bench_options, bench_arguments);
         return bench_options;
+    }
+    if (view->parsed()) {
+        finish_view(view_options, view_arguments);
+        return view_options;
     }
     if (inspect->parsed()) return inspect_options;
     if (classes->parsed()) return classes_options;

@@ -54,4 +54,34 @@ std::vector<Algorithm> parse_algorithms(const std::string& text, const char* opt
     return algorithms;
 }
 
+ColorMode parse_color(const std::string& text) {
+    return parse_choice<ColorMode>(
+        text, "--color",
+        {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
+}
+
+SampleSequence parse_sampler(const std::string& text) {
+    return parse_choice<SampleSequence>(
+        text, "--sampler", {{"sobol", SampleSequence::sobol}, {"independent", SampleSequence::independent}});
+}
+
+Schedule parse_schedule(const std::string& text) {
+    return parse_choice<Schedule>(text, "--schedule",
+                                  {{"auto", Schedule::automatic},
+                                   {"fused", Schedule::fused},
+                                   {"wavefront", Schedule::wavefront},
+                                   {"by-class", Schedule::by_class}});
+}
+
+double parse_exposure(const std::string& text) {
+    const double sign = text.starts_with("-") ? -1 : 1;
+    const std::string size = text.substr(text.starts_with("-") || text.starts_with("+"));
+    double value = 0;
+    const auto [end, error] = std::from_chars(size.data(), size.data() + size.size(), value);
+    if (size.empty() || error != std::errc() || end != size.data() + size.size() || !(value <= 32) ||
+        value < 0)
+        fail_input("--exposure {}: allowed: a number from -32 to 32", text);
+    return sign * value;
+}
+
 }  // namespace etendue

@@ -12,6 +12,10 @@ double parse_positive(const std::string& text, const char* option, const char* u
 ImageSize parse_size(const std::string& text);  // of --size
 Algorithm parse_algorithm(const std::string& text, const char* option);
 std::vector<Algorithm> parse_algorithms(const std::string& text, const char* option);  // with commas between
+ColorMode parse_color(const std::string& text);                                        // of --color, …
+SampleSequence parse_sampler(const std::string& text);
+Schedule parse_schedule(const std::string& text);
+double parse_exposure(const std::string& text);
 
 template <class Choice>
 Choice parse_choice(const std::string& text, const char* option,

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/preview/view_transform.h"
 #include "host/render/modes.h"
 
 namespace etendue {
@@ -44,6 +45,17 @@ struct RenderOptions : SceneChoice {
     std::string command_line;  // as typed, for the image's attributes
 };
 
+struct ViewOptions : SceneChoice {  // `size`: of the window, in pixels
+    Algorithm algorithm = Algorithm::automatic;
+    Schedule schedule = Schedule::automatic;
+    uint64_t vertex_bytes = uint64_t(256) << 20;
+    uint64_t seed = 0;
+    std::optional<uint64_t> passes;     // after which the picture rests; none = never
+    std::optional<double> exposure;     // powers of two; none = metered from the first picture
+    ToneCurve curve = ToneCurve::srgb;  // to begin with
+    std::filesystem::path stats;        // empty = none
+};
+
 struct CompareOptions {
     std::filesystem::path image, reference;
     std::optional<double> max_relmse;
@@ -71,6 +83,7 @@ struct ClassesOptions {
 int render_command(const RenderOptions& options);
 int compare_command(const CompareOptions& options);
 int bench_command(const BenchOptions& options);
+int view_command(const ViewOptions& options);
 int inspect_command(const InspectOptions& options);
 int classes_command(const ClassesOptions& options);
 int devices_command();

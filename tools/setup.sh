@@ -12,6 +12,8 @@ packages=(
     libvulkan-dev vulkan-validationlayers libvulkan1
     glslang-dev spirv-tools spirv-headers libglm-dev libtinygltf-dev libopenexr-dev libfmt-dev
     libcli11-dev nlohmann-json3-dev doctest-dev libstb-dev gnuplot-nox
+    libglfw3-dev libimgui-dev # the window
+    xvfb libxtst-dev # tests of the window
     libopenvdb-dev libboost-dev # grids of media; OpenVDB's headers want Boost's
 )
 as_root() { if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi; }

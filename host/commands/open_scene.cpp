@@ -8,10 +8,7 @@
 
 namespace etendue {
 
-OpenedScene open_scene(const SceneChoice& choice) {
-    const SceneDescription description = import_gltf(choice.scene);
-    OpenedScene opened;
-    opened.device = create_device({choice.device, false});
+SceneOptions scene_options(const SceneChoice& choice) {
     SceneOptions options;
     options.shaders = choice.shaders;
     options.environment = choice.environment;
@@ -19,7 +16,14 @@ OpenedScene open_scene(const SceneChoice& choice) {
     options.spectral_image = choice.spectral_bins > 0;
     options.samples = choice.samples;
     options.cache_folder = default_cache_folder();
-    opened.scene = compile_scene(*opened.device, description, options);
+    return options;
+}
+
+OpenedScene open_scene(const SceneChoice& choice) {
+    const SceneDescription description = import_gltf(choice.scene);
+    OpenedScene opened;
+    opened.device = create_device({choice.device, false});
+    opened.scene = compile_scene(*opened.device, description, scene_options(choice));
     return opened;
 }
 

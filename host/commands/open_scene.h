@@ -16,6 +16,9 @@ struct OpenedScene {
 // Fails with one line for what is wrong in the scene or its files, and where there is no such device.
 OpenedScene open_scene(const SceneChoice& choice);
 
+// The device aside: what the choice says of compiling.
+SceneOptions scene_options(const SceneChoice& choice);
+
 // The receiver of that name, else the first.
 const Receiver& choose_receiver(const Scene& scene, const SceneChoice& choice);
 

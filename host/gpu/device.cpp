@@ -52,7 +52,7 @@ bool has_instance_extension(const char* name) {
                        [&](auto& e) { return !std::strcmp(e.extensionName, name); });
 }
 
-VkInstance create_instance(bool validation, bool debug_utils) {
+VkInstance create_instance(bool validation, bool debug_utils, std::vector<const char*> extensions = {}) {
     // Mesa's shader cache does not tell kernels of different vector widths apart: a folder for each.
     if (const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH"))
         if (const char* home = std::getenv("HOME"))
@@ -62,8 +62,9 @@ VkInstance create_instance(bool validation, bool debug_utils) {
     application.apiVersion = VK_API_VERSION_1_2;
     VkInstanceCreateInfo info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
     info.pApplicationInfo = &application;
-    const char* extension = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-    if (debug_utils) info.enabledExtensionCount = 1, info.ppEnabledExtensionNames = &extension;
+    if (debug_utils) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    info.enabledExtensionCount = uint32_t(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     if (validation) info.enabledLayerCount = 1, info.ppEnabledLayerNames = &validation_layer;
     VkInstance instance = VK_NULL_HANDLE;
     const VkResult result = vkCreateInstance(&info, nullptr, &instance);
@@ -81,13 +82,23 @@ std::vector<VkPhysicalDevice> physical_devices(VkInstance instance) {
     return devices;
 }
 
-int compute_family(VkPhysicalDevice device, uint32_t* timestamp_bits) {
+bool has_device_extension(VkPhysicalDevice device, const char* name) {
+    uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+    return std::any_of(extensions.begin(), extensions.end(),
+                       [&](auto& e) { return !std::strcmp(e.extensionName, name); });
+}
+
+// The first queue family with all those flags; -1 where there is none.
+int find_family(VkPhysicalDevice device, VkQueueFlags flags, uint32_t* timestamp_bits = nullptr) {
     uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
     for (uint32_t i = 0; i < count; ++i)
-        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
+        if ((families[i].queueFlags & flags) == flags) {
             if (timestamp_bits) *timestamp_bits = families[i].timestampValidBits;
             return int(i);
         }
@@ -109,7 +120,11 @@ const char* type_name(VkPhysicalDeviceType type) {
     }
 }
 
-DeviceDescription describe(VkPhysicalDevice device, uint32_t index) {
+VkQueueFlags queue_flags(bool for_windows) {
+    return VK_QUEUE_COMPUTE_BIT | (for_windows ? VK_QUEUE_GRAPHICS_BIT : 0);
+}
+
+DeviceDescription describe(VkPhysicalDevice device, uint32_t index, bool for_windows) {
     DeviceDescription d;
     d.index = index;
     VkPhysicalDeviceMaintenance3Properties maintenance{
@@ -143,7 +158,11 @@ DeviceDescription describe(VkPhysicalDevice device, uint32_t index) {
     vkGetPhysicalDeviceFeatures2(device, &features.core);
     if (!features.scalar.scalarBlockLayout) d.missing.push_back("scalarBlockLayout");
     if (!features.address.bufferDeviceAddress) d.missing.push_back("bufferDeviceAddress");
-    if (compute_family(device, nullptr) < 0) d.missing.push_back("a compute queue");
+    if (find_family(device, queue_flags(false)) < 0) d.missing.push_back("a compute queue");
+    if (for_windows && find_family(device, queue_flags(true)) < 0)
+        d.missing.push_back("a queue that draws and computes");
+    if (for_windows && !has_device_extension(device, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
+        d.missing.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     const auto operations = VK_SUBGROUP_FEATURE_BALLOT_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT |
                             VK_SUBGROUP_FEATURE_ARITHMETIC_BIT | VK_SUBGROUP_FEATURE_BASIC_BIT;
     if ((subgroup.supportedOperations & operations) != operations)
@@ -151,10 +170,10 @@ DeviceDescription describe(VkPhysicalDevice device, uint32_t index) {
     return d;
 }
 
-std::vector<DeviceDescription> describe_all(VkInstance instance) {
+std::vector<DeviceDescription> describe_all(VkInstance instance, bool for_windows = false) {
     std::vector<DeviceDescription> result;
     for (VkPhysicalDevice device : physical_devices(instance))
-        result.push_back(describe(device, uint32_t(result.size())));
+        result.push_back(describe(device, uint32_t(result.size()), for_windows));
     return result;
 }
 
@@ -221,7 +240,11 @@ std::unique_ptr<Device> create_device(const DeviceOptions& given) {
     if (options.validation && !has_layer(validation_layer))
         fail_device("the validation layer {} is not installed", validation_layer);
     device->debug_names = options.validation && has_instance_extension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-    device->instance = create_instance(options.validation, device->debug_names);
+    const bool for_windows = !options.window_extensions.empty();
+    for (const char* extension : options.window_extensions)
+        if (!has_instance_extension(extension))
+            fail_device("the Vulkan driver lacks {}, which the window needs", extension);
+    device->instance = create_instance(options.validation, device->debug_names, options.window_extensions);
     if (options.validation) {
         VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
         info.messageSeverity =
@@ -234,12 +257,12 @@ std::unique_ptr<Device> create_device(const DeviceOptions& given) {
         check(create(device->instance, &info, nullptr, &device->messenger), "vkCreateDebugUtilsMessengerEXT");
     }
 
-    const uint32_t chosen = choose(describe_all(device->instance), options.selector);
+    const uint32_t chosen = choose(describe_all(device->instance, for_windows), options.selector);
     device->physical = physical_devices(device->instance)[chosen];
-    device->description = describe(device->physical, chosen);
+    device->description = describe(device->physical, chosen, for_windows);
     vkGetPhysicalDeviceMemoryProperties(device->physical, &device->memory_properties);
     uint32_t timestamp_bits = 0;
-    device->queue_family = uint32_t(compute_family(device->physical, &timestamp_bits));
+    device->queue_family = uint32_t(find_family(device->physical, queue_flags(for_windows), &timestamp_bits));
     VkPhysicalDeviceProperties properties;
     vkGetPhysicalDeviceProperties(device->physical, &properties);
     if (timestamp_bits) device->timestamp_period = properties.limits.timestampPeriod;
@@ -255,6 +278,8 @@ std::unique_ptr<Device> create_device(const DeviceOptions& given) {
     VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features.core};
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    const char* swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    if (for_windows) info.enabledExtensionCount = 1, info.ppEnabledExtensionNames = &swapchain;
     check(vkCreateDevice(device->physical, &info, nullptr, &device->handle), "vkCreateDevice");
     vkGetDeviceQueue(device->handle, device->queue_family, 0, &device->queue);
     VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};

@@ -29,6 +29,9 @@ struct DeviceOptions {
     // Khronos validation layer; its messages are collected in Device::validation_messages. The environment
     // variable ETENDUE_VALIDATION turns it on for any program, which then prints them at its end.
     bool validation = false;
+    // For a device that shows pictures in windows: the instance extensions that the window system wants.
+    // Where there are any, the device must draw and have swapchains, too.
+    std::vector<const char*> window_extensions;
 };
 
 struct Device {

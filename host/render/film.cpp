@@ -17,6 +17,8 @@ uint64_t Film::pixel_bytes() const { return sizeof(FilmPixel) + (merging_ ? size
 
 BufferTable Film::buffers() const { return {{"Film", &pixels_}}; }
 
+void Film::resize(uint32_t width, uint32_t height) { width_ = width, height_ = height; }
+
 void Film::clear() { pixels_.fill(0); }
 
 std::vector<std::byte> Film::read() const {

@@ -18,6 +18,10 @@ class Film {
 
     BufferTable buffers() const;  // "Film"; valid as long as the film
 
+    bool merging() const { return merging_; }
+
+    void resize(uint32_t width,
+                uint32_t height);  // to no more pixels than at first; what they hold is undefined
     void clear();
     // The bytes are those of struct FilmPixel in shaders/lib/film.glsl, for every pixel.
     std::vector<std::byte> read() const;

@@ -19,6 +19,10 @@ constexpr uint32_t vertices_a_path = 16;    // for which room is kept, if there 
 // 1e-21; in media that scatter and hardly absorb only MAX_DEPTH of shaders/lib/path.glsl ends them.
 constexpr uint64_t least_vertices = 1024, least_vertices_in_media = 65536;
 
+uint32_t path_count(const RenderSettings& s) {
+    return uint32_t(std::clamp(s.forward_paths * s.width * s.height, 1.0, double(1 << 24)));
+}
+
 }  // namespace
 
 double merge_radius_factor(uint64_t pass) {
@@ -33,8 +37,7 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
       techniques_(techniques),
       power_(scene.power),
       radius_(scene.radius),
-      all_(uint32_t(
-          std::clamp(settings.forward_paths * settings.width * settings.height, 1.0, double(1 << 24)))),
+      all_(path_count(settings)),
       count_(all_),
       pass_(device, sizeof(ForwardPass), "ForwardPassTable"),
       splats_(device, uint64_t(settings.width) * settings.height * (scene.features.spectral ? 32 : 24),
@@ -116,7 +119,12 @@ void ForwardRays::trace_paths(CommandList& commands, KernelTimings& timings) {
     commands.run(&timings);
 }
 
-void ForwardRays::restart() { resume(0); }
+void ForwardRays::restart(const FilmView& view) {
+    settings_.receiver = view.receiver;
+    settings_.width = view.width, settings_.height = view.height;
+    all_ = path_count(settings_);
+    resume(0);
+}
 
 void ForwardRays::resume(uint32_t paths_a_pass) {
     splats_.fill(0);

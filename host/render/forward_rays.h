@@ -30,7 +30,7 @@ class ForwardRays {
     uint64_t take_paths() { return std::exchange(paths_, 0); }
     uint64_t take_splits() { return std::exchange(splits_, 0); }
     uint32_t paths_a_pass() const { return count_; }
-    void restart();
+    void restart(const FilmView& view);
     // Goes on behind a pass of that many paths; 0 = there was none.
     void resume(uint32_t paths_a_pass);
 

@@ -1,8 +1,14 @@
 #include <algorithm>
+#include <chrono>
 
 #include "host/render/pipelines.h"
 
 namespace etendue {
+namespace {
+
+constexpr double band_seconds = 0.025;  // of a dispatch, where somebody may interrupt
+
+}  // namespace
 
 Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const RenderSettings& s,
                                        const Techniques& techniques, ForwardRays* forward,
@@ -10,27 +16,42 @@ Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const Rende
     : Pipeline(s, forward, spectra) {
     trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", film, techniques.backward_defines());
     // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
-    const uint32_t pixels = settings.width * settings.height;
-    const uint32_t pixels_a_group = trace_paths.group_size() * (device.description.type == "CPU" ? 8 : 1);
-    groups = std::clamp((pixels + pixels_a_group - 1) / pixels_a_group, 1u, max_groups);
+    pixels_a_group = trace_paths.group_size() * (device.description.type == "CPU" ? 8 : 1);
 }
 
-void Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
+uint32_t Renderer::FusedPipeline::groups(uint32_t pixels) const {
+    return std::clamp((pixels + pixels_a_group - 1) / pixels_a_group, 1u, max_groups);
+}
+
+bool Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
                                   KernelTimings& timings) {
     // With forward rays pass by pass: each meets its own.
     for (uint32_t done = 0, at_once; done < count; done += at_once) {
         at_once = forward ? 1 : std::min(count - done, spectra.capacity());
         spectra.write(first + done, at_once, settings.seed);
         if (forward) forward->trace(commands, first + done, settings.seed, timings);
-        commands.dispatch(trace_paths, groups,
-                          {{"receiver", settings.receiver},
-                           {"width", settings.width},
-                           {"height", settings.height},
-                           {"first_sample", uint32_t(first) + done},
-                           {"sample_count", at_once},
-                           {"seed", settings.seed}});
-        commands.run(&timings);
+        const uint32_t all = settings.width * settings.height;
+        uint32_t band = all;  // pixels of a dispatch: all, unless somebody may interrupt
+        for (uint32_t pixel = 0; pixel < all; pixel += band) {
+            if (interrupted()) return false;
+            if (interrupt) band = uint32_t(std::clamp(pixels_a_second * band_seconds / at_once, 4096.0, 1e9));
+            const uint32_t pixels = std::min(band, all - pixel);
+            const auto start = std::chrono::steady_clock::now();
+            commands.dispatch(trace_paths, groups(pixels),
+                              {{"receiver", settings.receiver},
+                               {"width", settings.width},
+                               {"height", settings.height},
+                               {"first_pixel", pixel},
+                               {"end_pixel", pixel + pixels},
+                               {"first_sample", uint32_t(first) + done},
+                               {"sample_count", at_once},
+                               {"seed", settings.seed}});
+            commands.run(&timings);
+            pixels_a_second = double(pixels) * at_once /
+                              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        }
     }
+    return true;
 }
 
 void Renderer::FusedPipeline::warm_up(CommandList& commands) {

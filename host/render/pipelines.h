@@ -11,29 +11,33 @@ struct Renderer::Pipeline {
     Pipeline(const RenderSettings& settings, ForwardRays* forward, SpectralPasses& spectra)
         : settings(settings), forward(forward), spectra(spectra) {}
     virtual ~Pipeline() = default;
-    // Runs passes [first, first + count).
-    virtual void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) = 0;
+    // Runs passes [first, first + count). False: interrupted.
+    virtual bool run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) = 0;
     // Dispatches every kernel on nothing: drivers finish compiling at the first dispatch.
     virtual void warm_up(CommandList& commands) = 0;
     RenderSettings settings;
     ForwardRays* forward;  // null = none
     SpectralPasses& spectra;
+    std::function<bool()> interrupt;  // may be empty
+    bool interrupted() const { return interrupt && interrupt(); }
 };
 
 struct Renderer::FusedPipeline : Pipeline {
     FusedPipeline(Device& device, Scene& scene, const RenderSettings& settings, const Techniques& techniques,
                   ForwardRays* forward, SpectralPasses& spectra, const BufferTable& film);
-    void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
+    bool run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
+    uint32_t groups(uint32_t pixels) const;
     Kernel trace_paths;
-    uint32_t groups = 1;
+    uint32_t pixels_a_group;
+    double pixels_a_second = 0;  // of the last dispatch; 0 = there was none
 };
 
 struct Renderer::WavefrontPipeline : Pipeline {
     WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& settings,
                       const Techniques& techniques, ForwardRays* forward, SpectralPasses& spectra,
                       const BufferTable& film, bool by_class);
-    void run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
+    bool run(CommandList& commands, uint64_t first, uint32_t count, KernelTimings& timings) override;
     void warm_up(CommandList& commands) override;
     // One batch: `samples` samples of the pixels [first_pixel, first_pixel + pixels).
     void run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels, uint32_t first_sample,

@@ -7,7 +7,6 @@
 #include "host/error.h"
 #include "host/render/automatic.h"
 #include "host/render/pipelines.h"
-#include "host/render/start_media.h"
 
 namespace etendue {
 namespace {
@@ -94,6 +93,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       scene_(scene),
       settings_(settings),
       schedule_(settings.schedule),
+      most_pixels_(settings.width * settings.height),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
       receiver_moves_(scene.receiver_moves),
       spectra_(device, scene),
@@ -138,28 +138,47 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
 
 Renderer::~Renderer() = default;
 
-void Renderer::render_passes(uint32_t count) {
+bool Renderer::render_passes(uint32_t count) {
     const auto start = std::chrono::steady_clock::now();
-    pipeline_->run(commands_, passes_, count, timings_);
+    if (!pipeline_->run(commands_, passes_, count, timings_)) return false;
     passes_ += count;
     read_counters();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     seconds_ += seconds;
     last_pass_seconds_ = seconds / count;
+    return true;
 }
 
 float Renderer::film_aspect() const { return float(settings_.width) / float(settings_.height); }
 
+void Renderer::set_interrupt(std::function<bool()> interrupt) { pipeline_->interrupt = std::move(interrupt); }
+
 void Renderer::restart(uint32_t seed) {
-    if (receiver_moves_ != scene_.receiver_moves) {
-        start_media_->find_of_receiver(settings_.receiver, film_aspect());
-        receiver_moves_ = scene_.receiver_moves;
+    restart(seed, {settings_.receiver, settings_.width, settings_.height});
+}
+
+void Renderer::restart(uint32_t seed, const FilmView& view) {
+    if (uint64_t(view.width) * view.height > most_pixels_)
+        fail_device("a film of {} x {} pixels is larger than the renderer was made for", view.width,
+                    view.height);
+    const float aspect_before = film_aspect();
+    const bool same_receiver =
+        settings_.receiver == view.receiver && receiver_moves_ == scene_.receiver_moves;
+    for (RenderSettings* settings : {&settings_, &pipeline_->settings}) {
+        settings->seed = seed;
+        settings->receiver = view.receiver;
+        settings->width = view.width, settings->height = view.height;
     }
-    settings_.seed = pipeline_->settings.seed = seed;
+    if (!same_receiver || aspect_before != film_aspect())
+        start_media_->find_of_receiver(settings_.receiver, film_aspect());
+    receiver_moves_ = scene_.receiver_moves;
+    film_->resize(view.width, view.height);
+    if (spectral_film_) spectral_film_->resize(view.width * view.height);
+    last_pass_seconds_ = 0;
     film_->clear();
     if (spectral_film_) spectral_film_->clear();
     counter_sums_.fill(0);
-    if (forward_) forward_->restart();
+    if (forward_) forward_->restart(view);
     counters_ = {};
     passes_ = 0;
 }
@@ -219,6 +238,22 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
     }
     add_channels(image, {"albedo.R", "albedo.G", "albedo.B", "normal.X", "normal.Y", "normal.Z", "depth.Z"},
                  std::span(&aovs[0].albedo.x, 7 * pixels), 7);
+}
+
+void Renderer::read_picture(std::vector<glm::vec3>& picture) {
+    if (!picture_) {
+        picture_ = Buffer(device_, uint64_t(most_pixels_) * sizeof(glm::vec3), "Picture");
+        BufferTable buffers = film_->buffers();
+        buffers["Picture"] = &picture_;
+        develop_film_ = make_color_kernel(device_, scene_, "kernels/develop_film.comp", buffers,
+                                          fmt::format("#define MERGE_VERTICES {}\n", int(film_->merging())));
+    }
+    const uint32_t pixels = settings_.width * settings_.height;
+    commands_.dispatch(develop_film_, (pixels + develop_film_.group_size() - 1) / develop_film_.group_size(),
+                       {{"pixels", pixels}});
+    commands_.run(&timings_);
+    picture.resize(pixels);
+    picture_.read(picture.data(), picture.size() * sizeof(glm::vec3));
 }
 
 FilmState Renderer::state() const {

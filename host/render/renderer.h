@@ -4,6 +4,7 @@
 // size of a batch, so the film after n passes is the same bits for the same seed and device.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "host/render/modes.h"
 #include "host/render/spectral_film.h"
 #include "host/render/spectral_passes.h"
+#include "host/render/start_media.h"
 #include "host/scene/scene.h"
 
 namespace etendue {
@@ -44,6 +46,12 @@ struct RenderSettings {
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
     float merge_radius = 1;                       // of the first pass, in widths of a pixel; > 0
     uint32_t spectral_bins = 0;  // of a spectral image, where paths carry wavelengths; 0 = none
+};
+
+// What a film shows, and in how many pixels.
+struct FilmView {
+    uint32_t receiver = no_record;  // RecordRef
+    uint32_t width = 0, height = 0;
 };
 
 // Sums over all passes. Importance: every path starts with 1.
@@ -81,9 +89,14 @@ class Renderer {
     ~Renderer();
     Renderer(const Renderer&) = delete;
 
-    void render_passes(uint32_t count);
+    // False: the interrupt ended it within a pass, and the film must be restarted.
+    bool render_passes(uint32_t count);
+    // Asked within passes whether to stop, every few hundredths of a second where that can be.
+    void set_interrupt(std::function<bool()> interrupt);
     // An empty film again; kernels and timings stay. What move_receiver has changed is seen from here on.
     void restart(uint32_t seed);
+    // The same for another receiver or size, with at most as many pixels as at first.
+    void restart(uint32_t seed, const FilmView& view);
     // How many passes take about `seconds` by the speed of the last batch; 1 before the first.
     uint32_t passes_in(double seconds) const;
 
@@ -96,6 +109,8 @@ class Renderer {
     const AlgorithmChoice& choice() const { return choice_; }
 
     Image develop(bool errors = true) const { return film_->develop(errors); }
+    // The mean radiance alone, developed on the device.
+    void read_picture(std::vector<glm::vec3>& picture);
     // Adds the spectra of a spectral image, if it is one (SpectralFilm::add_to).
     void add_spectra(Image& image) const;
     RelativeError relative_error() const { return film_->relative_error(); }
@@ -116,6 +131,7 @@ class Renderer {
     AlgorithmChoice choice_;
     RenderSettings settings_;
     Schedule schedule_;
+    uint32_t most_pixels_;
     std::unique_ptr<Film> film_;
     std::optional<SpectralFilm> spectral_film_;
     Buffer counter_sums_;
@@ -125,6 +141,8 @@ class Renderer {
     std::unique_ptr<ForwardRays> forward_;  // null = none
     std::unique_ptr<Pipeline> pipeline_;
     CommandList commands_;
+    Buffer picture_;
+    Kernel develop_film_;  // none until a picture is read
     KernelTimings timings_;
     RenderCounters counters_;
     uint64_t passes_ = 0;

@@ -15,6 +15,7 @@ class SpectralFilm {
   public:
     SpectralFilm(Device& device, uint32_t pixels, uint32_t bins);
     BufferTable buffers() const;
+    void resize(uint32_t pixels) { pixels_ = pixels; }  // as Film::resize
     void clear();
     std::vector<std::byte> read() const;
     void write(const std::vector<std::byte>& state);  // of a film of the same size

@@ -30,7 +30,7 @@ Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, con
       accumulate_film(make_kernel(device, scene, "kernels/accumulate_film.comp",
                                   joined(film, paths.buffers()), techniques.backward_defines())) {}
 
-void Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
+bool Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
                                       KernelTimings& timings) {
     const uint32_t pixels = settings.width * settings.height;
     const uint32_t tile = std::min(pixels, paths.slots());
@@ -39,10 +39,13 @@ void Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uin
     for (uint32_t sample = 0; sample < count; sample += samples_at_once) {
         spectra.write(first + sample, std::min(samples_at_once, count - sample), settings.seed);
         if (forward) forward->trace(commands, first + sample, settings.seed, timings);
-        for (uint32_t pixel = 0; pixel < pixels; pixel += tile)
+        for (uint32_t pixel = 0; pixel < pixels; pixel += tile) {
+            if (interrupted()) return false;
             run_tile(commands, pixel, std::min(tile, pixels - pixel), uint32_t(first) + sample,
                      std::min(samples_at_once, count - sample), timings);
+        }
     }
+    return true;
 }
 
 void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels,

@@ -8,6 +8,7 @@ layout(push_constant) uniform Push {
     uint receiver;       // RecordRef
     uint width;
     uint height;
+    uint first_pixel, end_pixel;  // of this dispatch
     uint first_sample;   // index of the first pass
     uint sample_count;   // passes of this dispatch
     uint seed;
@@ -20,15 +21,14 @@ layout(push_constant) uniform Push {
 
 void main() {
     uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    uint pixels = width * height;
-    uint pixel = scattered_lane();
+    uint pixel = first_pixel + scattered_lane();
     uint sample_index = 0u;
     Counters counters = no_counters();
     Path path;
     bool alive = false;
     FilmPixel sum;
-    if (pixel < pixels) sum = film[pixel];
-    while (pixel < pixels) {
+    if (pixel < end_pixel) sum = film[pixel];
+    while (pixel < end_pixel) {
         if (!alive) {
 #if SPECTRAL
             batch_pass = sample_index;
@@ -60,7 +60,7 @@ void main() {
                 film[pixel] = sum;
                 pixel += lanes;
                 sample_index = 0u;
-                if (pixel < pixels) sum = film[pixel];
+                if (pixel < end_pixel) sum = film[pixel];
             }
         }
     }

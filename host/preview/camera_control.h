@@ -1,0 +1,39 @@
+// How mouse and keys move a camera: pure functions of where it stands. Lengths in metres, angles in radians,
+// the scene file's coordinates; +y is up.
+#pragma once
+#include <glm/glm.hpp>
+
+namespace etendue {
+
+struct CameraPose {
+    glm::dmat4 placement{1.0};  // world_from_local of the receiver; it looks along -z of it, +y is up
+    glm::dvec3 pivot{0};        // what it turns around
+};
+
+// How large the view is at the pivot.
+struct CameraLens {
+    bool parallel = false;  // rays
+    double height = 1;  // of the view: tan(yfov / 2) * 2 at distance 1, or in metres where rays are parallel
+};
+
+// Where a camera stands to begin with: the pivot lies on its axis, as far away as the scene's centre if that
+// is in front of it, else a tenth of the radius.
+CameraPose start_pose(const glm::dmat4& placement, const glm::dvec3& scene_center, double scene_radius);
+
+// Turns around the pivot: the scene follows a pointer that moves by those angles. The view never tips over.
+CameraPose orbit(const CameraPose& pose, double right, double down);
+// Turns around where the camera stands, by those angles. The pivot turns along.
+CameraPose look(const CameraPose& pose, double right, double down);
+// What is at the depth of the pivot follows a pointer that moves by those fractions of the view's height.
+CameraPose pan(const CameraPose& pose, const CameraLens& lens, double right, double down);
+// Moves towards the pivot until it is `factor` times as far away (> 0); scales the view where rays are
+// parallel.
+CameraPose dolly(const CameraPose& pose, const CameraLens& lens, double factor);
+// Moves by metres along the camera's own axes; the pivot moves along.
+CameraPose fly(const CameraPose& pose, double right, double up, double forward);
+// Turns around another point from now on; nothing moves.
+CameraPose focus(const CameraPose& pose, const glm::dvec3& point);
+
+double pivot_distance(const CameraPose& pose);  // along the axis; > 0
+
+}  // namespace etendue

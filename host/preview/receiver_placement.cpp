@@ -1,0 +1,39 @@
+#include "host/preview/receiver_placement.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace etendue {
+namespace {
+
+bool is_parallel(const Receiver& receiver) { return receiver.info->name == "orthographic"; }
+double ymag_of(const Receiver& receiver) { return receiver.parameters.value("ymag", 1.0); }
+double yfov_of(const Receiver& receiver) { return receiver.parameters.value("yfov", std::numbers::pi / 4); }
+
+}  // namespace
+
+CameraLens lens_of(const Receiver& receiver) {
+    if (is_parallel(receiver)) return {true, 2 * ymag_of(receiver)};
+    return {false, 2 * std::tan(yfov_of(receiver) / 2)};
+}
+
+nlohmann::json camera_as_gltf(const Receiver& receiver, double aspect_ratio) {
+    nlohmann::json camera;
+    if (is_parallel(receiver))
+        camera = {{"type", "orthographic"},
+                  {"orthographic",
+                   {{"xmag", ymag_of(receiver) * aspect_ratio},
+                    {"ymag", ymag_of(receiver)},
+                    {"znear", 0.0},
+                    {"zfar", 1e6}}}};
+    else
+        camera = {
+            {"type", "perspective"},
+            {"perspective", {{"aspectRatio", aspect_ratio}, {"yfov", yfov_of(receiver)}, {"znear", 0.01}}}};
+    nlohmann::json matrix = nlohmann::json::array();
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r) matrix.push_back(receiver.world_from_local[c][r]);
+    return {{"cameras", {camera}}, {"nodes", {{{"name", receiver.name}, {"camera", 0}, {"matrix", matrix}}}}};
+}
+
+}  // namespace etendue

@@ -1,0 +1,115 @@
+#include "host/preview/session.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <utility>
+
+namespace etendue {
+namespace {
+
+constexpr int render_niceness = 5;
+constexpr std::chrono::milliseconds watch_interval(250);  // between two looks at the scene's files
+
+}  // namespace
+
+PreviewSession::PreviewSession(const ViewOptions& options, std::function<void()> notify)
+    : notify_(std::move(notify)),
+      worker_(
+          options, [this] { return is_stale(); }, [this] { share(); }),
+      thread_([this] { run(); }) {}
+
+PreviewSession::~PreviewSession() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+}
+
+void PreviewSession::request(const PreviewRequest& request) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (wanted_ == request) return;
+        wanted_ = request;
+    }
+    wake_.notify_one();
+}
+
+void PreviewSession::post(std::function<void(PreviewScene&)> task) {
+    {
+        const std::lock_guard lock(mutex_);
+        tasks_.push_back(std::move(task));
+    }
+    wake_.notify_one();
+}
+
+std::shared_ptr<const PreviewPicture> PreviewSession::picture() const {
+    const std::lock_guard lock(mutex_);
+    return picture_;
+}
+
+PreviewStatus PreviewSession::status() const {
+    const std::lock_guard lock(mutex_);
+    return status_;
+}
+
+void PreviewSession::rethrow_failure() const {
+    const std::lock_guard lock(mutex_);
+    if (failure_) std::rethrow_exception(failure_);
+}
+
+bool PreviewSession::is_stale() {
+    const std::lock_guard lock(mutex_);
+    return stop_ || !wanted_.shows_the_same(at_work_);
+}
+
+void PreviewSession::share() {
+    {
+        const std::lock_guard lock(mutex_);
+        picture_ = worker_.picture();
+        status_ = worker_.status();
+    }
+    notify_();
+}
+
+void PreviewSession::run() {
+    // Where the device is a CPU its threads are started from here, and give way to those that draw the
+    // window.
+    setpriority(PRIO_PROCESS, id_t(gettid()), render_niceness);
+    try {
+        worker_.open();
+        share();
+        loop();
+    } catch (...) {
+        const std::lock_guard lock(mutex_);
+        failure_ = std::current_exception();
+    }
+    notify_();
+}
+
+void PreviewSession::loop() {
+    bool busy = true;
+    auto next_watch = std::chrono::steady_clock::now() + watch_interval;
+    while (true) {
+        std::deque<std::function<void(PreviewScene&)>> tasks;
+        {
+            std::unique_lock lock(mutex_);
+            const auto has_news = [&] { return stop_ || !tasks_.empty() || wanted_ != at_work_; };
+            if (!busy) wake_.wait_until(lock, next_watch, has_news);
+            if (stop_) return;
+            at_work_ = wanted_;
+            tasks.swap(tasks_);
+        }
+        for (const auto& task : tasks) worker_.run_task(task);
+        if (std::chrono::steady_clock::now() >= next_watch) {
+            worker_.reload_changed();
+            next_watch = std::chrono::steady_clock::now() + watch_interval;
+        }
+        busy = worker_.work(at_work_);
+    }
+}
+
+}  // namespace etendue

@@ -1,0 +1,16 @@
+// What `etendue view` loads at run time, so that no other command needs a window library: libetendue_view.so,
+// which takes everything but the window itself from the executable.
+#pragma once
+#include "host/commands.h"
+
+// Shows the scene until the window is closed; the exit code. Errors leave as Error. `started`: seconds_now()
+// when the program began.
+extern "C" int etendue_view(const etendue::ViewOptions& options, double started);
+
+namespace etendue {
+
+inline constexpr const char* view_module_name = "libetendue_view.so";
+inline constexpr const char* view_module_entry = "etendue_view";
+double seconds_now();  // of a clock that never goes back
+
+}  // namespace etendue

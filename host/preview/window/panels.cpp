@@ -1,0 +1,84 @@
+#include "host/preview/window/panels.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "host/preview/window/input.h"
+
+namespace etendue {
+namespace {
+
+constexpr double notice_seconds = 4;
+constexpr float panel_width = 300, margin = 10;  // of a display of 96 dpi
+constexpr auto fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
+                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav |
+                       ImGuiWindowFlags_NoFocusOnAppearing;
+
+void draw_line(const char* name, float y, const std::string& text, const ImVec4& color) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({size.x / 2, y}, ImGuiCond_Always, {0.5f, y < size.y / 2 ? 0.0f : 1.0f});
+    ImGui::SetNextWindowBgAlpha(0.8f);
+    ImGui::Begin(name, nullptr, fixed | ImGuiWindowFlags_NoInputs);
+    ImGui::PushTextWrapPos(0.8f * size.x);
+    ImGui::TextColored(color, "%s", text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::End();
+}
+
+}  // namespace
+
+void draw_messages(ViewState& state) {
+    const float bottom = ImGui::GetIO().DisplaySize.y - margin * state.content_scale;
+    if (!state.status.message.empty())
+        draw_line("message", margin * state.content_scale, state.status.message,
+                  state.status.is_error ? ImVec4(1, 0.5f, 0.4f, 1) : ImVec4(1, 1, 1, 1));
+    else if (state.status.scene == 0)
+        draw_line("message", margin * state.content_scale, "opening " + state.options.scene.string(),
+                  {1, 1, 1, 1});
+    if (glfwGetTime() - state.notice_at < notice_seconds)
+        draw_line("notice", bottom, state.notice, {1, 1, 1, 1});
+}
+
+void draw_help(ViewState& state) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin(
+        "Keys and mouse", &state.help,
+        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse);
+    if (ImGui::BeginTable("shortcuts", 2)) {
+        for (const Input::Shortcut& shortcut : Input::shortcuts()) {
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(shortcut.keys.c_str());
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(shortcut.meaning.c_str());
+        }
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+void draw_panels(ViewState& state) {
+    if (state.panels) {
+        const float scale = state.content_scale;
+        ImGui::SetNextWindowPos({margin * scale, margin * scale}, ImGuiCond_FirstUseEver);
+        ImGui::SetNextWindowSizeConstraints(
+            {panel_width * scale, 0},
+            {panel_width * scale, ImGui::GetIO().DisplaySize.y - 2 * margin * scale});
+        ImGui::Begin("étendue", &state.panels,
+                     ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize);
+        ImGui::PushItemWidth(0.55f * panel_width * scale);
+        draw_statistics_panel(state);
+        draw_film_panel(state);
+        draw_camera_panel(state);
+        ImGui::TextDisabled("? lists the keys, Tab hides the panels");
+        ImGui::PopItemWidth();
+        ImGui::End();
+    }
+    if (state.help) draw_help(state);
+    draw_messages(state);
+}
+
+}  // namespace etendue

@@ -1,0 +1,15 @@
+// The panels, one a file.
+#pragma once
+#include "host/preview/window/view_state.h"
+
+namespace etendue {
+
+void draw_panels(ViewState& state);  // all that are open
+
+void draw_camera_panel(ViewState& state);
+void draw_film_panel(ViewState& state);
+void draw_statistics_panel(ViewState& state);
+void draw_help(ViewState& state);
+void draw_messages(ViewState& state);
+
+}  // namespace etendue

@@ -1,0 +1,58 @@
+// What the window knows and what its panels and keys change. The session is told once a frame.
+#pragma once
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "host/preview/camera_control.h"
+#include "host/preview/session.h"
+#include "host/preview/view_transform.h"
+
+struct GLFWwindow;
+
+namespace etendue {
+
+// What tasks on the session's thread bring back. They may outlive the window.
+struct TaskResults {
+    std::mutex mutex;
+    std::optional<std::string> notice, clipboard;
+    std::optional<glm::dvec3> focus;  // point to turn around
+};
+
+struct ViewState {
+    ViewState(const ViewOptions& options, PreviewSession& session) : options(options), session(session) {}
+    const ViewOptions& options;
+    PreviewSession& session;
+    GLFWwindow* window = nullptr;
+    PreviewStatus status;
+    std::shared_ptr<const PreviewPicture> picture;  // null = none yet
+    PreviewRequest request;
+    ViewSettings view;
+    CameraPose pose;
+    bool moved = false;      // the camera stands elsewhere than in the scene
+    double moved_at = -1e9;  // glfwGetTime
+    bool panels = true, help = false;
+    bool metered = false;     // the exposure is chosen
+    float content_scale = 1;  // of the display: pixels for one of a display of 96 dpi
+    std::string notice;       // shown for some seconds
+    double notice_at = -1e9;
+    double pointer_x = 0, pointer_y = 0;        // pixels of the framebuffer
+    double longest_frame = 0, first_shown = 0;  // seconds; the latter since the start
+    std::shared_ptr<TaskResults> results = std::make_shared<TaskResults>();
+};
+
+// The receiver that is shown; null before there is a scene.
+const PreviewReceiver* shown_receiver(const ViewState& state);
+
+void note(ViewState& state, const std::string& notice);
+void move_camera(ViewState& state, const CameraPose& pose);
+void reset_camera(ViewState& state);
+void choose_receiver(ViewState& state, uint32_t index);
+void meter_exposure(ViewState& state);
+void focus_at_pointer(ViewState& state);
+void copy_camera(ViewState& state);  // to the clipboard, as glTF
+void save_image(ViewState& state);   // EXR and (sRGB, with the exposure) PNG, in the current folder
+// Takes over what the session and its tasks have brought since the last frame.
+void receive_news(ViewState& state);
+
+}  // namespace etendue

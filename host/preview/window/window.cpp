@@ -1,0 +1,206 @@
+// The module that `etendue view` loads: a window, until it is closed.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "host/error.h"
+#include "host/image/atomic_file.h"
+#include "host/interrupt.h"
+#include "host/preview/view_module.h"
+#include "host/preview/window/input.h"
+#include "host/preview/window/panels.h"
+#include "host/preview/window/presenter.h"
+
+namespace etendue {
+namespace {
+
+constexpr double frame_seconds = 1.0 / 60, moving_seconds = 0.2, idle_seconds = 0.5;
+constexpr int frames_after_events = 3;  // until panels have settled
+constexpr int default_rows = 720;
+
+struct Glfw {
+    Glfw() {
+        glfwSetErrorCallback([](int, const char* text) { last_error() = text; });
+        if (!glfwInit()) fail_device("no window can be opened: {}", last_error());
+        if (!glfwVulkanSupported()) fail_device("no window can be opened: no Vulkan driver shows pictures");
+    }
+    ~Glfw() { glfwTerminate(); }
+    static std::string& last_error() {
+        static std::string text = "no display";
+        return text;
+    }
+};
+
+// Wakes the window, while there is one.
+class Bell {
+  public:
+    void ring() {
+        const std::lock_guard lock(mutex_);
+        if (is_on_) glfwPostEmptyEvent();
+    }
+    void set(bool on) {
+        const std::lock_guard lock(mutex_);
+        is_on_ = on;
+    }
+
+  private:
+    std::mutex mutex_;
+    bool is_on_ = false;
+};
+struct BellOn {
+    explicit BellOn(Bell& bell) : bell(bell) { bell.set(true); }
+    ~BellOn() { bell.set(false); }
+    Bell& bell;
+};
+
+struct Panels {
+    Panels(GLFWwindow* window, float scale) {
+        ImGui::CreateContext();
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;
+        ImFontConfig font;
+        font.SizePixels = std::floor(13 * scale);  // the built-in font's own size
+        io.Fonts->AddFontDefault(&font);
+        ImGui::StyleColorsDark();
+        ImGui::GetStyle().ScaleAllSizes(scale);
+        ImGui_ImplGlfw_InitForVulkan(window, true);
+    }
+    ~Panels() {
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+    }
+};
+
+GLFWwindow* open_window(const ViewOptions& options) {
+    int width = 0, height = 0;
+    if (options.size) {
+        width = int(options.size->width), height = int(options.size->height);
+    } else {
+        height = default_rows, width = height * 16 / 9;
+    }
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    const std::string title = "étendue: " + options.scene.filename().string();
+    GLFWwindow* window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    if (!window) fail_device("no window can be opened: {}", Glfw::last_error());
+    return window;
+}
+
+// What the window shows when nothing has been asked for yet, and what the session is told once a frame.
+void tell_session(ViewState& state) {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(state.window, &width, &height);
+    const bool hidden = glfwGetWindowAttrib(state.window, GLFW_ICONIFIED);
+    state.request.width = hidden ? 0 : uint32_t(width);
+    state.request.height = hidden ? 0 : uint32_t(height);
+    state.request.moving = glfwGetTime() - state.moved_at < moving_seconds;
+    state.request.placement = state.moved ? std::optional(state.pose.placement) : std::nullopt;
+    state.session.request(state.request);
+}
+
+ViewSettings settings_for(const ViewState& state) {
+    ViewSettings settings = state.view;
+    if (state.picture->layer == Layer::radiance) return settings;
+    const bool is_error = state.picture->layer == Layer::error;  // relative: from a thousandth to one
+    return {0, {}, is_error ? ToneCurve::false_colors : ToneCurve::linear, 0.001, 1};
+}
+
+void write_view_stats(const ViewState& state, uint64_t presenter_bytes) {
+    if (state.options.stats.empty()) return;
+    const nlohmann::json stats = {{"first_picture_seconds", state.first_shown},
+                                  {"longest_frame_seconds", state.longest_frame},
+                                  {"passes", state.status.passes},
+                                  {"step", state.status.step},
+                                  {"device_bytes", state.status.device_bytes},
+                                  {"window_device_bytes", presenter_bytes}};
+    const std::string text = stats.dump(2) + "\n";
+    write_atomically(state.options.stats, std::as_bytes(std::span(text)));
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options, double started) {
+    const auto since_start = [&] { return seconds_now() - started; };
+    Bell bell;
+    PreviewSession session(options, [&] { bell.ring(); });  // opens the scene while the window opens
+    const Glfw glfw;
+    const BellOn bell_on(bell);
+    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window(open_window(options), glfwDestroyWindow);
+    ViewState state(options, session);
+    state.window = window.get();
+    state.view.curve = options.curve;
+    state.view.exposure = options.exposure.value_or(0);
+    state.metered = options.exposure.has_value();
+    state.request.algorithm = options.algorithm;
+    state.request.seed = uint32_t(options.seed ^ (options.seed >> 32));
+    glfwGetWindowContentScale(state.window, &state.content_scale, nullptr);
+    tell_session(state);
+    Input input(state);
+    const Panels panels(state.window, state.content_scale);
+    Presenter presenter(state.window, options.shaders);
+
+    std::shared_ptr<const PreviewPicture> developed;
+    std::optional<ViewTransform> developed_as;
+    int frames_left = frames_after_events;
+    double last_frame = 0;
+    while (!glfwWindowShouldClose(state.window) && !interrupted()) {
+        const double now = glfwGetTime(), next = last_frame + frame_seconds;
+        if (frames_left > 0 && next > now)
+            glfwWaitEventsTimeout(next - now);
+        else if (frames_left > 0)
+            glfwPollEvents();
+        else
+            glfwWaitEventsTimeout(idle_seconds);
+        const double start = glfwGetTime();
+        const auto shown_before = state.picture;
+        const auto message_before = state.status.message;
+        const uint64_t passes_before = state.status.passes;
+        receive_news(state);
+        const bool flies = input.fly_on(start - last_frame);
+        tell_session(state);
+        if (state.request.width == 0) {
+            frames_left = 0;
+            continue;
+        }
+        const bool news = state.picture != shown_before || state.status.passes != passes_before ||
+                          state.status.message != message_before;
+        if (input.take_resize()) presenter.resized();
+        if (input.take_events() || news || flies) frames_left = frames_after_events;
+        // What stands for some time: messages end, movement comes to rest.
+        if (start - state.notice_at < 5 || start - state.moved_at < 2 * moving_seconds)
+            frames_left = std::max(frames_left, 1);
+        if (frames_left == 0 || start < next) continue;
+        --frames_left;
+
+        ImGui_ImplVulkan_NewFrame();
+        ImGui_ImplGlfw_NewFrame();
+        ImGui::NewFrame();
+        draw_panels(state);
+        ImGui::Render();
+        if (state.picture) {
+            const ViewTransform view = view_transform(settings_for(state));
+            if (state.picture != developed || !developed_as || !(view == *developed_as)) {
+                presenter.develop(*state.picture, view);
+                developed = state.picture;
+                developed_as = view;
+            }
+        }
+        if (!presenter.draw(ImGui::GetDrawData())) frames_left = std::max(frames_left, 1);
+        if (state.picture && state.first_shown == 0) state.first_shown = since_start();
+        last_frame = start;
+        if (state.first_shown > 0) state.longest_frame = std::max(state.longest_frame, glfwGetTime() - start);
+    }
+    write_view_stats(state, presenter.device_bytes());
+    return int(ExitCode::done);
+}
+
+}  // namespace etendue
+
+extern "C" int etendue_view(const etendue::ViewOptions& options, double started) {
+    return etendue::run_view(options, started);
+}

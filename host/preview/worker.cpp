@@ -1,0 +1,247 @@
+#include "host/preview/worker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "host/commands/open_scene.h"
+#include "host/error.h"
+#include "host/preview/receiver_placement.h"
+#include "host/render/automatic.h"
+
+namespace etendue {
+namespace {
+
+constexpr double moving_seconds = 0.05;   // that a pass may take while the view moves
+constexpr double resting_seconds = 0.25;  // that the first pass of a picture at rest may take
+constexpr double slice_seconds = 0.1;     // of passes between two pictures
+constexpr uint32_t coarsest_step = 8;
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+FilmView film_view(uint32_t receiver, const PreviewRequest& request, uint32_t step) {
+    return {receiver, (request.width + step - 1) / step, (request.height + step - 1) / step};
+}
+
+}  // namespace
+
+const char* layer_name(Layer layer) {
+    constexpr const char* names[] = {"radiance", "error", "albedo", "normal", "depth"};
+    return names[int(layer)];
+}
+
+bool PreviewRequest::shows_the_same(const PreviewRequest& other) const {
+    return width == other.width && height == other.height && receiver == other.receiver &&
+           placement == other.placement && algorithm == other.algorithm && seed == other.seed;
+}
+
+PreviewWorker::PreviewWorker(const ViewOptions& options, std::function<bool()> interrupt,
+                             std::function<void()> changed)
+    : options_(options), interrupt_(std::move(interrupt)), changed_(std::move(changed)) {}
+
+PreviewWorker::~PreviewWorker() = default;
+
+void PreviewWorker::open() {
+    device_ = create_device({options_.device, false});
+    status_.device = device_->description.name;
+    load();
+}
+
+void PreviewWorker::load() {
+    auto loaded = std::make_unique<Loaded>();
+    loaded->description = import_gltf(options_.scene);
+    loaded->scene = compile_scene(*device_, loaded->description, scene_options(options_));
+    status_.first_receiver =
+        uint32_t(&choose_receiver(loaded->scene, options_) - loaded->scene.receivers.data());
+    renderer_.reset();  // it refers to the old scene
+    loaded_ = std::move(loaded);
+    current_.reset();
+    choice_.reset();
+    describe_scene();
+    std::vector<std::filesystem::path> files = {options_.scene};
+    if (!options_.shaders.empty()) files.push_back(options_.shaders);
+    for (const ClassFileDescription& file : loaded_->description.class_files)
+        files.push_back(loaded_->description.folder / file.file);
+    watched_ = WatchedFiles(files);
+}
+
+void PreviewWorker::describe_scene() {
+    const Scene& scene = loaded_->scene;
+    ++status_.scene;
+    status_.receivers.clear();
+    for (const Receiver& receiver : scene.receivers)
+        status_.receivers.push_back({receiver.name, receiver.info->name, receiver.aspect_ratio,
+                                     receiver.world_from_local, lens_of(receiver)});
+    status_.scene_center = scene.center;
+    status_.scene_radius = scene.radius;
+    status_.triangles = scene.triangles, status_.shapes = scene.shapes;
+    status_.instances = scene.instances, status_.lights = scene.lights;
+    status_.materials = scene.materials;
+}
+
+uint32_t PreviewWorker::receiver_ref(const PreviewRequest& request) const {
+    const auto& receivers = loaded_->scene.receivers;
+    return receivers[std::min<size_t>(request.receiver, receivers.size() - 1)].ref;
+}
+
+bool PreviewWorker::work(const PreviewRequest& request) {
+    if (request.width == 0 || request.height == 0) return false;
+    if (!current_ || !current_->shows_the_same(request)) {
+        start_film(request);
+    } else if (!request.moving && step_ > 1 && renderer_->passes() > 0 && !request.paused) {
+        restart(std::min(step_ / 2, step_for(resting_seconds, request)));  // finer
+    }
+    const bool other_layer =
+        current_->layer != request.layer || current_->wants_errors != request.wants_errors;
+    current_ = request;
+    const uint64_t all = options_.passes.value_or(UINT64_MAX);
+    const bool at_rest =
+        (request.paused && renderer_->passes() > 0) || (step_ == 1 && renderer_->passes() >= all);
+    if (at_rest) {
+        if (other_layer || status_.at_rest != at_rest) publish(request);
+        update_status(true);
+        return false;
+    }
+    if (!request.moving && choose_algorithm_at_rest(request)) return true;
+
+    const auto start = Clock::now();
+    const uint64_t rays = all_rays(renderer_->counters());
+    const uint64_t left = step_ == 1 ? all - renderer_->passes() : UINT64_MAX;
+    // Coarse pictures only bridge the time until the finer one.
+    const double seconds = renderer_->passes() == 0 || (step_ > 1 && !request.moving) ? 0 : slice_seconds;
+    const uint32_t count = uint32_t(std::min<uint64_t>(renderer_->passes_in(seconds), left));
+    if (!renderer_->render_passes(count)) {
+        current_.reset();  // the film is of no use
+        return true;
+    }
+    const FilmView view = film_view(0, request, step_);
+    const double taken = seconds_since(start);
+    seconds_a_pixel_ = taken / count / (double(view.width) * view.height);
+    status_.rays_per_second = double(all_rays(renderer_->counters()) - rays) / taken;
+    publish(request);
+    update_status(false);
+    return true;
+}
+
+void PreviewWorker::start_film(const PreviewRequest& request) {
+    const size_t index = std::min<size_t>(request.receiver, status_.receivers.size() - 1);
+    move_receiver(loaded_->scene, index, request.placement.value_or(status_.receivers[index].placement),
+                  loaded_->scene.receivers[index].parameters);
+    if (!renderer_ || request.width * request.height > capacity_ || algorithm_ != request.algorithm) {
+        AlgorithmChoice first;
+        first.reason = "until the view rests";
+        const bool automatic = request.algorithm == Algorithm::automatic;
+        make_renderer(request, automatic ? choice_.value_or(first) : std::optional<AlgorithmChoice>());
+    }
+    current_ = request;
+    restart(step_for(request.moving ? moving_seconds : resting_seconds, request));
+}
+
+void PreviewWorker::make_renderer(const PreviewRequest& request,
+                                  const std::optional<AlgorithmChoice>& choice) {
+    RenderSettings settings;
+    settings.width = request.width, settings.height = request.height;
+    settings.receiver = receiver_ref(request);
+    settings.seed = request.seed;
+    settings.algorithm = request.algorithm;
+    settings.schedule = options_.schedule;
+    settings.vertex_bytes = options_.vertex_bytes;
+    settings.spectral_bins = options_.spectral_bins;
+    settings.choice = choice;
+    renderer_.reset();  // two may not fit
+    renderer_ = std::make_unique<Renderer>(*device_, loaded_->scene, settings);
+    renderer_->set_interrupt(interrupt_);
+    algorithm_ = request.algorithm;
+    capacity_ = request.width * request.height;
+    status_.kernels = loaded_->scene.kernels;
+}
+
+// The finest picture of which a pass takes that long at most.
+uint32_t PreviewWorker::step_for(double seconds, const PreviewRequest& request) const {
+    uint32_t step = 1;
+    while (step < coarsest_step) {
+        const FilmView view = film_view(0, request, step);
+        if (seconds_a_pixel_ > 0 && seconds_a_pixel_ * view.width * view.height <= seconds) break;
+        step *= 2;
+    }
+    return step;
+}
+
+void PreviewWorker::restart(uint32_t step) {
+    step_ = step;
+    renderer_->restart(current_->seed, film_view(receiver_ref(*current_), *current_, step));
+    errors_.clear();
+    next_errors_ = 2;
+    status_.error.reset();
+    aovs_ = {};
+}
+
+// A pilot takes seconds, so that the first pictures are made by backward rays.
+bool PreviewWorker::choose_algorithm_at_rest(const PreviewRequest& request) {
+    if (request.algorithm != Algorithm::automatic || choice_ || step_ > 1 || renderer_->passes() < 2)
+        return false;
+    say("choosing the algorithm: a pilot renders both ways");
+    RenderSettings settings;
+    settings.width = request.width, settings.height = request.height;
+    settings.receiver = receiver_ref(request);
+    settings.seed = request.seed;
+    settings.algorithm = Algorithm::automatic;
+    settings.schedule = renderer_->schedule();
+    settings.vertex_bytes = options_.vertex_bytes;
+    choice_ = choose_algorithm(*device_, loaded_->scene, settings);
+    if (choice_->algorithm != Algorithm::backward) {
+        make_renderer(request, choice_);
+        restart(1);
+    }
+    say("");
+    return true;
+}
+
+void PreviewWorker::run_task(const std::function<void(PreviewScene&)>& task) {
+    if (!renderer_ || !current_) return;
+    PreviewScene scene{*device_,  loaded_->description,   loaded_->scene, *renderer_,
+                       *current_, receiver_ref(*current_)};
+    try {
+        task(scene);
+    } catch (const Error& error) {
+        if (error.code == ExitCode::device_failed) throw;
+        say(error.what(), true);
+    }
+    if (scene.restart) current_.reset();
+}
+
+bool PreviewWorker::reload_changed() {
+    if (!watched_.changed()) return false;
+    say("loading the scene again");
+    try {
+        load();
+        say("");
+    } catch (const Error& error) {
+        if (error.code == ExitCode::device_failed) throw;
+        say(error.what(), true);
+    }
+    return true;
+}
+
+void PreviewWorker::say(const std::string& message, bool is_error) {
+    status_.message = message;
+    status_.is_error = is_error;
+    changed_();
+}
+
+void PreviewWorker::update_status(bool at_rest) {
+    status_.passes = renderer_->passes();
+    status_.step = step_;
+    status_.at_rest = at_rest;
+    status_.choice = renderer_->choice();
+    status_.schedule = renderer_->schedule();
+    status_.seconds = renderer_->seconds();
+    status_.timings = renderer_->timings();
+    status_.device_bytes = device_->bytes_allocated;
+    changed_();
+}
+
+}  // namespace etendue

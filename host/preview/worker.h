@@ -1,0 +1,74 @@
+// Answers requests for pictures, slice by slice: opens the scene, keeps a renderer of the window's size, and
+// chooses how fine a picture is. Without threads; PreviewSession runs it on one.
+//
+// While the view moves, pictures are smaller by a whole number of pixels, so that they come quickly; at rest
+// they are refined to full size, and then for as long as one looks.
+#pragma once
+#include <functional>
+
+#include "host/commands.h"
+#include "host/preview/preview.h"
+#include "host/preview/watched_files.h"
+#include "host/scene/gltf.h"
+
+namespace etendue {
+
+class PreviewWorker {
+  public:
+    // `interrupt` is asked within passes whether the picture at hand is still wanted. `changed`: status or
+    // picture are new, and worth showing before the slice ends.
+    PreviewWorker(const ViewOptions& options, std::function<bool()> interrupt, std::function<void()> changed);
+    ~PreviewWorker();
+
+    void open();  // device and scene; fails as `render` does
+    // One slice of some hundredths of a second, but where kernels are compiled. False: nothing is left to do.
+    bool work(const PreviewRequest& request);
+    // Before the first picture nothing happens. An Error becomes the message.
+    void run_task(const std::function<void(PreviewScene&)>& task);
+    // Loads the scene again where its files or shaders have changed. An Error becomes the message, and what
+    // was there stays.
+    bool reload_changed();
+
+    const PreviewStatus& status() const { return status_; }
+    const std::shared_ptr<const PreviewPicture>& picture() const { return picture_; }
+
+  private:
+    struct Loaded {
+        SceneDescription description;
+        Scene scene;
+    };
+    void load();
+    void describe_scene();
+    void start_film(const PreviewRequest& request);
+    void make_renderer(const PreviewRequest& request, const std::optional<AlgorithmChoice>& choice);
+    uint32_t step_for(double seconds, const PreviewRequest& request) const;
+    void restart(uint32_t step);
+    bool choose_algorithm_at_rest(const PreviewRequest& request);
+    void publish(const PreviewRequest& request);
+    void look_at_errors(const PreviewRequest& request);
+    std::vector<glm::vec3> develop_layer(Layer layer, const PreviewPicture& picture);
+    void update_status(bool at_rest);
+    void say(const std::string& message, bool is_error = false);
+    uint32_t receiver_ref(const PreviewRequest& request) const;
+
+    const ViewOptions options_;
+    const std::function<bool()> interrupt_;
+    const std::function<void()> changed_;
+    std::unique_ptr<Device> device_;
+    std::unique_ptr<Loaded> loaded_;
+    std::unique_ptr<Renderer> renderer_;
+    WatchedFiles watched_;
+    PreviewStatus status_;
+    std::shared_ptr<const PreviewPicture> picture_;
+    std::optional<PreviewRequest> current_;       // what the film shows
+    std::optional<AlgorithmChoice> choice_;       // that --algorithm auto came to, for this scene
+    Algorithm algorithm_ = Algorithm::automatic;  // that the renderer was made for
+    uint32_t capacity_ = 0;                       // pixels that the renderer has room for
+    uint32_t step_ = 0;
+    double seconds_a_pixel_ = 0;  // of a pass; 0 = not known yet
+    uint64_t next_errors_ = 2;    // passes
+    std::vector<glm::vec3> errors_;
+    Image aovs_;  // of the film at hand; without pixels until asked for
+};
+
+}  // namespace etendue

@@ -1,0 +1,180 @@
+// Real windows, driven by mouse and keys as a user does it.
+#include <doctest/doctest.h>
+
+#include "tests/preview/window_fixture.h"
+
+using namespace etendue;
+
+namespace {
+
+// A red and a green ball on a plate in white surroundings, seen by two cameras.
+const std::string two_balls =
+    R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3, 4]}],
+"nodes": [{"translation": [-0.8, 0, 0], "extensions": {"ETD_optics": {"geometry": {"class": "sphere", "radius": 0.6, "material": 0}}}},
+          {"translation": [0.8, 0.2, -1], "extensions": {"ETD_optics": {"geometry": {"class": "sphere", "radius": 0.8, "material": 1}}}},
+          {"translation": [0, -0.6, 0], "rotation": [-0.70710678, 0, 0, 0.70710678],
+           "extensions": {"ETD_optics": {"geometry": {"class": "rectangle", "size": [4, 4], "material": 2}}}},
+          {"name": "front", "camera": 0, "translation": [0, 0.5, 5]},
+          {"name": "side", "camera": 1, "translation": [5, 0.3, 0], "rotation": [0, 0.70710678, 0, 0.70710678]}],
+"materials": [{"extensions": {"ETD_optics": {"surface": {"class": "lambertian", "reflectance": [0.8, 0.1, 0.1]}}}},
+              {"extensions": {"ETD_optics": {"surface": {"class": "lambertian", "reflectance": [0.1, 0.7, 0.1]}}}},
+              {"extensions": {"ETD_optics": {"surface": {"class": "lambertian", "reflectance": 0.5}}}}],
+"cameras": [{"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.1}},
+            {"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 1.5, "znear": 0, "zfar": 100}}],
+"extensions": {"ETD_optics": {"environment": {"class": "constant", "radiance": 1}}}})";
+
+const std::vector<std::string> at_rest = {"--passes", "4", "--exposure", "0", "--algorithm", "backward"};
+
+std::vector<std::string> words_with(const std::string& size, std::vector<std::string> more = {}) {
+    std::vector<std::string> words = at_rest;
+    words.insert(words.end(), {"--size", size});
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+Image headless(const Program& program, const std::string& size, const std::string& receiver = "front") {
+    const Run run = program.run({"render", "scene.gltf", "-q", "--passes", "4", "--algorithm", "backward",
+                                 "--size", size, "--receiver", receiver, "-o", "image.exr"});
+    REQUIRE_MESSAGE(run.code == 0, run.err);
+    return read_exr(program.folder / "image.exr");
+}
+
+// Half a step by rounding, and what 32-bit logarithms and powers add.
+constexpr double rounding = 0.6;
+
+bool shows(XServer& x, const Image& image, const ViewSettings& settings) {
+    double last = 0;
+    const bool shown = x.wait_until([&](const Screenshot& shot) {
+        last = greatest_difference(shot, image, settings);
+        return last < rounding;
+    });
+    if (!shown) MESSAGE("greatest difference of the last picture: ", last, "/255");
+    return shown;
+}
+
+}  // namespace
+
+TEST_CASE("the window shows the headless image, through every tone curve; panels lie on it") {
+    ViewedScene view(two_balls, words_with("480x360"));
+    Program files;  // of the headless image
+    write_text(files.folder / "scene.gltf", two_balls);
+    const Image image = headless(files, "480x360");
+    ViewSettings settings;
+    // The panel's ground is dark where the picture is bright.
+    CHECK(view.x.wait_until([&](const Screenshot& shot) {
+        const uint8_t* ground = shot.at(295, 100);
+        return std::max({ground[0], ground[1], ground[2]}) < 60 &&
+               greatest_difference(shot, image, settings) > 100;
+    }));
+    view.x.key("Tab");
+    CHECK(shows(view.x, image, settings));
+    for (const ToneCurve curve :
+         {ToneCurve::aces, ToneCurve::agx, ToneCurve::false_colors, ToneCurve::linear, ToneCurve::srgb}) {
+        CAPTURE(tone_curve_name(curve));
+        view.x.key("t");
+        settings.curve = curve;
+        CHECK(shows(view.x, image, settings));
+    }
+    view.x.key("minus");
+    settings.exposure = -1.0 / 3;
+    CHECK(shows(view.x, image, settings));
+    const Run run = view.close();
+    CHECK_MESSAGE(run.code == 0, run.err);
+    CHECK(run.err == "");
+}
+
+TEST_CASE("drags, the wheel and keys move the camera, and R brings it back") {
+    ViewedScene view(two_balls, words_with("320x240"));
+    Program files;
+    write_text(files.folder / "scene.gltf", two_balls);
+    const Image front = headless(files, "320x240"), side = headless(files, "320x240", "side");
+    const ViewSettings settings;
+    view.x.key("Tab");
+    REQUIRE(shows(view.x, front, settings));
+    const Screenshot before = view.x.screenshot();
+    const auto changes = [&] {
+        return view.x.wait_until([&](const Screenshot& shot) { return changed_share(shot, before) > 0.05; });
+    };
+    const auto drag = [&](int button) {
+        view.x.move(160, 120);
+        view.x.button(button, true);
+        for (int i = 1; i <= 10; ++i) view.x.move(160 + 6 * i, 120);
+        view.x.button(button, false);
+    };
+    for (const int button : {1, 2, 3}) {  // orbit, pan, look
+        CAPTURE(button);
+        drag(button);
+        CHECK(changes());
+        view.x.key("r");
+        CHECK(shows(view.x, front, settings));
+    }
+    view.x.button(4, true), view.x.button(4, false);  // the wheel
+    CHECK(changes());
+    view.x.key("Home");
+    CHECK(shows(view.x, front, settings));
+    view.x.button(3, true);  // fly
+    view.x.hold("d", true);
+    CHECK(changes());
+    view.x.hold("d", false);
+    view.x.button(3, false);
+    view.x.key("r");
+    CHECK(shows(view.x, front, settings));
+    view.x.key("2");  // the second camera, and back
+    CHECK(shows(view.x, side, settings));
+    view.x.key("Prior");
+    CHECK(shows(view.x, front, settings));
+    CHECK(view.close().err == "");
+}
+
+TEST_CASE("the question mark lists the keys") {
+    ViewedScene view(two_balls, words_with("800x600"));
+    view.x.key("Tab");
+    Program files;
+    write_text(files.folder / "scene.gltf", two_balls);
+    const Image image = headless(files, "800x600");
+    REQUIRE(shows(view.x, image, {}));
+    const Screenshot before = view.x.screenshot();
+    view.x.key("slash", true);
+    CHECK(view.x.wait_until([&](const Screenshot& shot) { return changed_share(shot, before) > 0.2; }));
+    view.x.key("slash", true);
+    CHECK(shows(view.x, image, {}));
+    CHECK(view.close().err == "");
+}
+
+TEST_CASE("without a display, without the module and with a bad scene there is one line") {
+    Program program;
+    write_text(program.folder / "scene.gltf", two_balls);
+    program.environment["DISPLAY"] = ":9999";
+    Run run = program.run({"view", "scene.gltf"});
+    CHECK(run.code == 3);
+    CHECK(run.error_lines() == 1);
+    CHECK(run.err.find("no window can be opened") != std::string::npos);
+
+    std::filesystem::copy_file(Program::path(), program.folder / "etendue");
+    const std::string alone = (program.folder / "etendue").string();
+    const std::string command =
+        "cd " + program.folder.path.string() + " && ./etendue view scene.gltf 2>alone.txt";
+    const int status = std::system(command.c_str());
+    CHECK(WEXITSTATUS(status) == 3);
+    const std::string line = read_text(program.folder / "alone.txt");
+    CHECK(std::count(line.begin(), line.end(), '\n') == 1);
+    CHECK(line.find("the window cannot be loaded") != std::string::npos);
+
+    XServer x;
+    program.environment["DISPLAY"] = x.name();
+    run = program.run({"view", "none.gltf"});
+    CHECK(run.code == 2);
+    CHECK(run.error_lines() == 1);
+}
+
+TEST_CASE("the executable itself needs no window library") {
+    TemporaryFolder folder;
+    const std::string list = (folder / "libraries.txt").string();
+    REQUIRE(std::system(("ldd " + Program::path() + " >" + list).c_str()) == 0);
+    const std::string libraries = read_text(list);
+    CHECK(libraries.find("libvulkan") != std::string::npos);
+    for (const char* name : {"glfw", "imgui", "libX", "xcb", "wayland"}) {
+        CAPTURE(name);
+        CHECK(libraries.find(name) == std::string::npos);
+    }
+}
