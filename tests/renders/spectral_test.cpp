@@ -100,17 +100,26 @@ TEST_CASE("lights, metals and paints have the colours that their spectra have") 
     CHECK(render_film(compiled, plan, Schedule::wavefront, {50, 100}).pixels == fused.pixels);
 }
 
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+// Of a material of glass with smooth faces: its index by the wavelength in nm, and it.
+struct Glass {
+    std::function<double(double)> index;
+    std::function<int(SceneBuilder&)> material;
+};
+
 // A ray meets the first face of a prism so that yellow light (the d line) goes through symmetrically, which
 // turns it least: Snell's law at both faces says where a line goes. A strip that the ray of the line just
 // meets, 0.01 degrees to either side and emitting that line alone, is seen; that of the other line is not.
-TEST_CASE("a prism of BK7 turns each line by its angle") {
-    const SpectralTable ior = table_of({{"name", "BK7 ior"}}, SpectralKind::index);
-    constexpr double degree = std::numbers::pi / 180, apex = 60 * degree, distance = 10;  // m
-    const double incidence = std::asin(ior.at(587.6) * std::sin(apex / 2));
-    CHECK(2 * incidence - apex == doctest::Approx(38.65 * degree).epsilon(1e-3));
+void check_prism(const Glass& glass, double yellow_deviation, double spread) {
+    constexpr double apex = 60 * degree, distance = 10;  // m
+    const double incidence = std::asin(glass.index(587.6) * std::sin(apex / 2));
+    CHECK(2 * incidence - apex == doctest::Approx(yellow_deviation).epsilon(1e-3));
     const auto deviation = [&](double nm) {
-        const double inside = apex - std::asin(std::sin(incidence) / ior.at(nm));
-        return incidence + std::asin(ior.at(nm) * std::sin(inside)) - apex;
+        const double inside = apex - std::asin(std::sin(incidence) / glass.index(nm));
+        return incidence + std::asin(glass.index(nm) * std::sin(inside)) - apex;
     };
     // In the plane y = 0, angles from -z towards -x: the direction of a ray, or of a normal.
     const auto along = [](double angle) { return glm::dvec3(-std::sin(angle), 0, -std::cos(angle)); };
@@ -128,19 +137,17 @@ TEST_CASE("a prism of BK7 turns each line by its angle") {
         return Line{nm, deviation(nm), {{"wavelengths", {nm - 1, nm, nm + 1}}, {"values", {0, 1e6, 0}}}};
     };
     const Line blue = line(486), red = line(656);
-    CHECK((blue.angle - red.angle) / degree == doctest::Approx(0.71).epsilon(0.1));
+    CHECK(blue.angle - red.angle == doctest::Approx(spread).epsilon(0.1));
 
     for (const auto& [emitted, placed] : {std::pair(blue, blue), std::pair(red, red), std::pair(blue, red)}) {
         CAPTURE(emitted.nm);
         CAPTURE(placed.nm);
         SceneBuilder scene;
-        scene.medium("glass", {{"ior", {{"name", "BK7 ior"}}}});
-        const json face = {{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}};
-        const int glass = scene.material(face);
+        const int face = glass.material(scene);
         const double inner = incidence - apex / 2;  // direction of the ray within
-        scene.rectangle(0.01, 0.01, glass, facing({0, 0, 0}, incidence));
+        scene.rectangle(0.01, 0.01, face, facing({0, 0, 0}, incidence));
         const glm::dvec3 exit = 0.02 * along(inner);
-        scene.rectangle(0.01, 0.01, glass, facing(exit, incidence - apex + std::numbers::pi));
+        scene.rectangle(0.01, 0.01, face, facing(exit, incidence - apex + std::numbers::pi));
         const double width = 2 * distance * std::tan(0.01 * degree);
         scene.rectangle(width, 0.1, scene.black_emitter(emitted.radiance),
                         facing(exit + distance * along(placed.angle), placed.angle));
@@ -152,7 +159,7 @@ TEST_CASE("a prism of BK7 turns each line by its angle") {
         REQUIRE(compiled.features.dispersion);
         const WindowMean seen = window_mean(render_estimates(compiled, plan));
         // Unpolarized light at both faces.
-        const double n = ior.at(emitted.nm), t = std::asin(std::sin(incidence) / n);
+        const double n = glass.index(emitted.nm), t = std::asin(std::sin(incidence) / n);
         const auto transmitted = [&](double c1, double c2) {
             const double s = (c1 - n * c2) / (c1 + n * c2), p = (n * c1 - c2) / (n * c1 + c2);
             return 1 - 0.5 * (s * s + p * p);
@@ -164,6 +171,33 @@ TEST_CASE("a prism of BK7 turns each line by its angle") {
         else
             CHECK(seen.mean == 0);
     }
+}
+
+}  // namespace
+
+TEST_CASE("a prism of BK7 turns each line by its angle") {
+    const SpectralTable ior = table_of({{"name", "BK7 ior"}}, SpectralKind::index);
+    const auto material = [](SceneBuilder& scene) {
+        scene.medium("glass", {{"ior", {{"name", "BK7 ior"}}}});
+        return scene.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}});
+    };
+    check_prism({[&](double nm) { return ior.at(nm); }, material}, 38.65 * degree, 0.71 * degree);
+}
+
+TEST_CASE("a prism of KHR_materials_dispersion turns each line by its angle") {
+    // Of Abbe number 70, by the formula of the extension.
+    const auto index = [](double nm) { return 1.6 + 0.6 / 70 * (523655 / (nm * nm) - 1.5168); };
+    const auto material = [](SceneBuilder& scene) {
+        scene.document["materials"].push_back(
+            {{"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0}}},
+             {"extensions",
+              {{"KHR_materials_ior", {{"ior", 1.6}}},
+               {"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+               {"KHR_materials_volume", {{"thicknessFactor", 1}}},
+               {"KHR_materials_dispersion", {{"dispersion", 20 / 70.0}}}}}});
+        return int(scene.document["materials"].size()) - 1;
+    };
+    check_prism({index, material}, 46.26 * degree, 0.82 * degree);
 }
 
 TEST_SUITE("long") {
