@@ -24,4 +24,28 @@ SeenPoint see_point(PreviewScene& scene, const glm::dvec2& film) {
             r.surface};
 }
 
+PixelReading read_pixel(PreviewScene& scene, const glm::uvec2& pixel) {
+    PixelReading reading;
+    reading.pixel = pixel;
+    const glm::dvec2 film = (glm::dvec2(pixel) + 0.5) / glm::dvec2(scene.request.width, scene.request.height);
+    reading.seen = see_point(scene, film);
+    if (reading.seen.hit) {
+        const auto& materials = scene.live.description().materials;
+        if (reading.seen.material < materials.size())
+            reading.material = materials[reading.seen.material].name;
+        const auto used = scene.scene.classes.find(Interface::surface);
+        if (used != scene.scene.classes.end())
+            for (const ClassInfo* info : used->second)
+                if (info->tag == reading.seen.surface >> 24) reading.surface_class = info->name;
+    }
+    Image spectra;
+    spectra.width = (scene.request.width + scene.step - 1) / scene.step;
+    spectra.height = (scene.request.height + scene.step - 1) / scene.step;
+    scene.renderer.add_spectra(spectra);
+    const size_t at = size_t(film.y * spectra.height) * spectra.width + size_t(film.x * spectra.width);
+    for (size_t bin = 0; bin < spectra.channels.size(); ++bin)
+        reading.spectrum.push_back(plane(spectra, bin)[at]);
+    return reading;
+}
+
 }  // namespace etendue

@@ -8,6 +8,7 @@
 
 #include "host/preview/camera_control.h"
 #include "host/render/renderer.h"
+#include "host/scene/live_scene.h"
 
 namespace etendue {
 
@@ -58,6 +59,8 @@ struct PreviewStatus {
     float scene_radius = 0;
     uint64_t triangles = 0, shapes = 0, instances = 0, lights = 0, materials = 0;
     std::vector<KernelReport> kernels;
+    std::shared_ptr<const std::vector<LiveObject>> objects;  // null = none yet
+    std::map<Interface, std::vector<std::string>> class_names;
 
     std::string device, message;  // message: an error, or what takes long; empty = none
     bool is_error = false;
@@ -75,12 +78,13 @@ struct PreviewStatus {
 // What a task works on, between two slices of work.
 struct PreviewScene {
     Device& device;
-    const SceneDescription& description;
+    LiveScene& live;
     Scene& scene;
     Renderer& renderer;
     const PreviewRequest& request;
-    uint32_t receiver;     // RecordRef
-    bool restart = false;  // set by a task that changed what the film shows
+    uint32_t receiver;            // RecordRef
+    uint32_t step;                // of the film at hand
+    std::shared_ptr<Scene> next;  // what a task's edit has made: the film begins anew with it
 };
 
 }  // namespace etendue

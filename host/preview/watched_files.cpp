@@ -2,8 +2,12 @@
 
 namespace etendue {
 
-WatchedFiles::WatchedFiles(std::vector<std::filesystem::path> paths) : paths_(std::move(paths)) {
-    known_ = last_ = look();
+void WatchedFiles::watch(std::vector<std::filesystem::path> paths) {
+    paths_ = std::move(paths);
+    Times known = look();
+    for (auto& [path, time] : known)
+        if (const auto before = known_.find(path); before != known_.end()) time = before->second;
+    known_ = std::move(known);
 }
 
 WatchedFiles::Times WatchedFiles::look() const {

@@ -8,9 +8,9 @@ namespace etendue {
 
 class WatchedFiles {
   public:
-    WatchedFiles() = default;
-    // Folders are watched with all that is below them.
-    explicit WatchedFiles(std::vector<std::filesystem::path> paths);
+    // These from now on; folders with all that is below them. What has changed of those that were watched
+    // before is still to be noticed.
+    void watch(std::vector<std::filesystem::path> paths);
     // Has anything changed, come or gone since the last call? Once a change is seen it is waited for its end:
     // true only where two calls in a row see the same.
     bool changed();

@@ -47,34 +47,44 @@ PreviewWorker::~PreviewWorker() = default;
 void PreviewWorker::open() {
     device_ = create_device({options_.device, false});
     status_.device = device_->description.name;
-    load();
+    live_ = std::make_unique<LiveScene>(*device_, options_.scene, scene_options(options_));
+    scene_ = live_->scene();
+    status_.first_receiver = uint32_t(&choose_receiver(*scene_, options_) - scene_->receivers.data());
+    describe_scene();
+    watch_files();
 }
 
-void PreviewWorker::load() {
-    auto loaded = std::make_unique<Loaded>();
-    loaded->description = import_gltf(options_.scene);
-    loaded->scene = compile_scene(*device_, loaded->description, scene_options(options_));
-    status_.first_receiver =
-        uint32_t(&choose_receiver(loaded->scene, options_) - loaded->scene.receivers.data());
-    renderer_.reset();  // it refers to the old scene
-    loaded_ = std::move(loaded);
-    current_.reset();
-    choice_.reset();
-    describe_scene();
+void PreviewWorker::watch_files() {
     std::vector<std::filesystem::path> files = {options_.scene};
     if (!options_.shaders.empty()) files.push_back(options_.shaders);
-    for (const ClassFileDescription& file : loaded_->description.class_files)
-        files.push_back(loaded_->description.folder / file.file);
-    watched_ = WatchedFiles(files);
+    const SceneDescription& scene = live_->description();
+    for (const ClassFileDescription& file : scene.class_files) files.push_back(scene.folder / file.file);
+    watched_.watch(files);
 }
 
 void PreviewWorker::describe_scene() {
-    const Scene& scene = loaded_->scene;
+    const Scene& scene = *scene_;
     ++status_.scene;
-    status_.receivers.clear();
-    for (const Receiver& receiver : scene.receivers)
-        status_.receivers.push_back({receiver.name, receiver.info->name, receiver.aspect_ratio,
-                                     receiver.world_from_local, lens_of(receiver)});
+    const auto& described = live_->description().receivers;
+    status_.receivers.resize(scene.receivers.size());
+    for (size_t i = 0; i < scene.receivers.size(); ++i) {
+        const Receiver& receiver = scene.receivers[i];
+        PreviewReceiver& status = status_.receivers[i];
+        // A camera that the file does not name is as it was at first.
+        const bool is_new = status.name.empty();
+        status.name = receiver.name, status.class_name = receiver.info->name;
+        status.aspect_ratio = receiver.aspect_ratio;
+        status.lens = lens_of(receiver);
+        if (i < described.size())
+            status.placement = described[i].world_from_local;
+        else if (is_new)
+            status.placement = receiver.world_from_local;
+    }
+    status_.objects = std::make_shared<const std::vector<LiveObject>>(live_->objects());
+    status_.class_names.clear();
+    for (const InterfaceInfo& interface : all_interfaces())
+        for (const ClassInfo& info : scene.registry->classes(interface.interface))
+            status_.class_names[interface.interface].push_back(info.name);
     status_.scene_center = scene.center;
     status_.scene_radius = scene.radius;
     status_.triangles = scene.triangles, status_.shapes = scene.shapes;
@@ -82,8 +92,25 @@ void PreviewWorker::describe_scene() {
     status_.materials = scene.materials;
 }
 
+// Puts the next scene in the place of the one there is; where its renderer cannot be made, all stays.
+void PreviewWorker::take_over(const std::shared_ptr<Scene>& next) {
+    if (next != scene_) {
+        if (current_) {
+            const uint32_t receiver = std::min(current_->receiver, uint32_t(next->receivers.size() - 1));
+            auto renderer = make_renderer(*next, receiver, *current_, first_choice(*current_));
+            renderer_ = std::move(renderer);
+        } else {
+            renderer_.reset();
+        }
+        live_->accept();
+        scene_ = next;
+    }
+    current_.reset();
+    describe_scene();
+}
+
 uint32_t PreviewWorker::receiver_ref(const PreviewRequest& request) const {
-    const auto& receivers = loaded_->scene.receivers;
+    const auto& receivers = scene_->receivers;
     return receivers[std::min<size_t>(request.receiver, receivers.size() - 1)].ref;
 }
 
@@ -127,36 +154,49 @@ bool PreviewWorker::work(const PreviewRequest& request) {
 }
 
 void PreviewWorker::start_film(const PreviewRequest& request) {
-    const size_t index = std::min<size_t>(request.receiver, status_.receivers.size() - 1);
-    move_receiver(loaded_->scene, index, request.placement.value_or(status_.receivers[index].placement),
-                  loaded_->scene.receivers[index].parameters);
+    const uint32_t index = std::min(request.receiver, uint32_t(status_.receivers.size() - 1));
+    move_receiver(*scene_, index, request.placement.value_or(status_.receivers[index].placement),
+                  scene_->receivers[index].parameters);
     if (!renderer_ || request.width * request.height > capacity_ || algorithm_ != request.algorithm) {
-        AlgorithmChoice first;
-        first.reason = "until the view rests";
-        const bool automatic = request.algorithm == Algorithm::automatic;
-        make_renderer(request, automatic ? choice_.value_or(first) : std::optional<AlgorithmChoice>());
+        renderer_.reset();  // two may not fit
+        renderer_ = make_renderer(*scene_, index, request, first_choice(request));
     }
     current_ = request;
     restart(step_for(request.moving ? moving_seconds : resting_seconds, request));
 }
 
-void PreviewWorker::make_renderer(const PreviewRequest& request,
-                                  const std::optional<AlgorithmChoice>& choice) {
+// Of --algorithm auto before it has come to one, by a pilot that takes seconds: backward rays.
+std::optional<AlgorithmChoice> PreviewWorker::first_choice(const PreviewRequest& request) const {
+    if (request.algorithm != Algorithm::automatic) return {};
+    AlgorithmChoice first;
+    first.reason = "until the view rests";
+    return choice_.value_or(first);
+}
+
+RenderSettings PreviewWorker::settings_for(const Scene& scene, uint32_t receiver,
+                                           const PreviewRequest& request) const {
     RenderSettings settings;
     settings.width = request.width, settings.height = request.height;
-    settings.receiver = receiver_ref(request);
+    settings.receiver = scene.receivers[receiver].ref;
     settings.seed = request.seed;
     settings.algorithm = request.algorithm;
     settings.schedule = options_.schedule;
     settings.vertex_bytes = options_.vertex_bytes;
     settings.spectral_bins = options_.spectral_bins;
+    return settings;
+}
+
+std::unique_ptr<Renderer> PreviewWorker::make_renderer(Scene& scene, uint32_t receiver,
+                                                       const PreviewRequest& request,
+                                                       const std::optional<AlgorithmChoice>& choice) {
+    RenderSettings settings = settings_for(scene, receiver, request);
     settings.choice = choice;
-    renderer_.reset();  // two may not fit
-    renderer_ = std::make_unique<Renderer>(*device_, loaded_->scene, settings);
-    renderer_->set_interrupt(interrupt_);
+    auto renderer = std::make_unique<Renderer>(*device_, scene, settings);
+    renderer->set_interrupt(interrupt_);
     algorithm_ = request.algorithm;
     capacity_ = request.width * request.height;
-    status_.kernels = loaded_->scene.kernels;
+    status_.kernels = scene.kernels;
+    return renderer;
 }
 
 // The finest picture of which a pass takes that long at most.
@@ -179,21 +219,15 @@ void PreviewWorker::restart(uint32_t step) {
     aovs_ = {};
 }
 
-// A pilot takes seconds, so that the first pictures are made by backward rays.
 bool PreviewWorker::choose_algorithm_at_rest(const PreviewRequest& request) {
     if (request.algorithm != Algorithm::automatic || choice_ || step_ > 1 || renderer_->passes() < 2)
         return false;
     say("choosing the algorithm: a pilot renders both ways");
-    RenderSettings settings;
-    settings.width = request.width, settings.height = request.height;
-    settings.receiver = receiver_ref(request);
-    settings.seed = request.seed;
-    settings.algorithm = Algorithm::automatic;
-    settings.schedule = renderer_->schedule();
-    settings.vertex_bytes = options_.vertex_bytes;
-    choice_ = choose_algorithm(*device_, loaded_->scene, settings);
+    const uint32_t receiver = std::min(request.receiver, uint32_t(scene_->receivers.size() - 1));
+    choice_ = choose_algorithm(*device_, *scene_, settings_for(*scene_, receiver, request));
     if (choice_->algorithm != Algorithm::backward) {
-        make_renderer(request, choice_);
+        renderer_.reset();
+        renderer_ = make_renderer(*scene_, receiver, request, choice_);
         restart(1);
     }
     say("");
@@ -202,28 +236,40 @@ bool PreviewWorker::choose_algorithm_at_rest(const PreviewRequest& request) {
 
 void PreviewWorker::run_task(const std::function<void(PreviewScene&)>& task) {
     if (!renderer_ || !current_) return;
-    PreviewScene scene{*device_,  loaded_->description,   loaded_->scene, *renderer_,
-                       *current_, receiver_ref(*current_)};
-    try {
+    PreviewScene scene{*device_, *live_, *scene_, *renderer_, *current_, receiver_ref(*current_),
+                       step_,    nullptr};
+    try_change([&] {
         task(scene);
-    } catch (const Error& error) {
-        if (error.code == ExitCode::device_failed) throw;
-        say(error.what(), true);
-    }
-    if (scene.restart) current_.reset();
+        return scene.next;
+    });
 }
 
 bool PreviewWorker::reload_changed() {
     if (!watched_.changed()) return false;
     say("loading the scene again");
+    try_change([&] {
+        std::shared_ptr<Scene> next = live_->reload();
+        choose_receiver(*next, options_);
+        choice_.reset();
+        return next;
+    });
+    watch_files();
+    return true;
+}
+
+// An Error becomes the message, and what was there stays.
+void PreviewWorker::try_change(const std::function<std::shared_ptr<Scene>()>& change) {
     try {
-        load();
-        say("");
+        if (const std::shared_ptr<Scene> next = change()) {
+            take_over(next);
+            say("");
+        }
     } catch (const Error& error) {
         if (error.code == ExitCode::device_failed) throw;
+        // As they are, where a panel shows what was refused.
+        status_.objects = std::make_shared<const std::vector<LiveObject>>(live_->objects());
         say(error.what(), true);
     }
-    return true;
 }
 
 void PreviewWorker::say(const std::string& message, bool is_error) {

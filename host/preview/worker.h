@@ -9,7 +9,6 @@
 #include "host/commands.h"
 #include "host/preview/preview.h"
 #include "host/preview/watched_files.h"
-#include "host/scene/gltf.h"
 
 namespace etendue {
 
@@ -33,14 +32,15 @@ class PreviewWorker {
     const std::shared_ptr<const PreviewPicture>& picture() const { return picture_; }
 
   private:
-    struct Loaded {
-        SceneDescription description;
-        Scene scene;
-    };
-    void load();
+    void watch_files();
     void describe_scene();
+    void take_over(const std::shared_ptr<Scene>& next);
+    void try_change(const std::function<std::shared_ptr<Scene>()>& change);
     void start_film(const PreviewRequest& request);
-    void make_renderer(const PreviewRequest& request, const std::optional<AlgorithmChoice>& choice);
+    std::optional<AlgorithmChoice> first_choice(const PreviewRequest& request) const;
+    RenderSettings settings_for(const Scene& scene, uint32_t receiver, const PreviewRequest& request) const;
+    std::unique_ptr<Renderer> make_renderer(Scene& scene, uint32_t receiver, const PreviewRequest& request,
+                                            const std::optional<AlgorithmChoice>& choice);
     uint32_t step_for(double seconds, const PreviewRequest& request) const;
     void restart(uint32_t step);
     bool choose_algorithm_at_rest(const PreviewRequest& request);
@@ -55,7 +55,8 @@ class PreviewWorker {
     const std::function<bool()> interrupt_;
     const std::function<void()> changed_;
     std::unique_ptr<Device> device_;
-    std::unique_ptr<Loaded> loaded_;
+    std::unique_ptr<LiveScene> live_;
+    std::shared_ptr<Scene> scene_;  // the renderer's
     std::unique_ptr<Renderer> renderer_;
     WatchedFiles watched_;
     PreviewStatus status_;

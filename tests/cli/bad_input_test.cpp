@@ -15,7 +15,7 @@ struct BadInput {
     int code;
     Words named;  // what the line must say
     std::string scene = small_scene();
-    std::function<void(Program&)> prepare = [](Program&) {};
+    std::function<void(Executable&)> prepare = [](Executable&) {};
 };
 
 const Words render = {"render", "s.gltf", "-o", "out.exr", "--passes", "1", "--size", "4x4"};
@@ -30,7 +30,7 @@ Words with(const Words& more) {
 void check(const std::vector<BadInput>& inputs) {
     for (const BadInput& bad : inputs) {
         CAPTURE(bad.what);
-        Program program;
+        Executable program;
         write_text(program.folder / "out.exr", "precious");
         write_text(program.folder / "s.gltf", bad.scene);
         bad.prepare(program);
@@ -73,7 +73,7 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          2,
          {"s.glb"},
          "",
-         [](Program& p) {
+         [](Executable& p) {
              write_text(p.folder / "s.glb", std::string("glTF\2\0\0\0\0\1\0\0\x40\0\0\0JSON{\"asset\"", 28));
          }},
         {"an unknown class",
@@ -121,13 +121,13 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          2,
          {"paper.json", "/theta_i/1", "[0, 90]"},
          small_scene(R"({"class": "measured", "file": "paper.json"})"),
-         [](Program& p) { write_text(p.folder / "paper.json", R"({"theta_i": [0, 100]})"); }},
+         [](Executable& p) { write_text(p.folder / "paper.json", R"({"theta_i": [0, 100]})"); }},
         {"a measured surface of a file cut short",
          render,
          2,
          {"gold.bsdf", "list of fields"},
          small_scene(R"({"class": "measured", "file": "gold.bsdf"})"),
-         [](Program& p) {
+         [](Executable& p) {
              write_text(p.folder / "gold.bsdf", std::string("tensor_file\0\1\0\7\0\0\0\5\0ndf", 23));
          }},
         {"a number too large", render, 2, {"s.gltf"}, small_scene(R"({"class": "lambertian"})", "1e999")},
@@ -144,7 +144,7 @@ TEST_CASE("bad options and files beside the scene are one line, and nothing is w
          2,
          {"dir.exr"},
          small_scene(),
-         [](Program& p) { std::filesystem::create_directory(p.folder / "dir.exr"); }},
+         [](Executable& p) { std::filesystem::create_directory(p.folder / "dir.exr"); }},
         {"stats that cannot be written", with({"--stats", "no/folder/s.json"}), 2, {"no/folder"}},
         {"checkpoint that cannot be written", with({"--checkpoint", "no/folder/state"}), 2, {"no/folder"}},
         {"environment missing", with({"--environment", "sky.hdr"}), 2, {"sky.hdr"}},
@@ -172,7 +172,7 @@ TEST_CASE("without a usable device the exit code is 3, and nothing is written") 
          3,
          {"Vulkan"},
          small_scene(),
-         [](Program& p) {
+         [](Executable& p) {
              p.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}};
          }},
         {"no Vulkan device to list",
@@ -180,14 +180,14 @@ TEST_CASE("without a usable device the exit code is 3, and nothing is written") 
          3,
          {"Vulkan"},
          small_scene(),
-         [](Program& p) {
+         [](Executable& p) {
              p.environment = {{"VK_DRIVER_FILES", "/nonexistent"}, {"VK_ICD_FILENAMES", "/nonexistent"}};
          }},
     });
 }
 
 TEST_CASE("a folder in which nothing can be made is one line") {
-    Program program;  // /proc takes no new files, not even from the superuser
+    Executable program;  // /proc takes no new files, not even from the superuser
     write_text(program.folder / "s.gltf", small_scene());
     const Run run = program.run({"render", "s.gltf", "-o", "/proc/out.exr"});
     CHECK(run.code == 2);

@@ -20,7 +20,7 @@ bool has_gnuplot() { return std::system("command -v gnuplot >/dev/null 2>&1") ==
 }  // namespace
 
 TEST_CASE("a bench leaves points, a page and images, and can draw its page again") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     const Run run = program.run(with({"--algorithms", "backward,auto"}));
     CAPTURE(run.err);
@@ -76,7 +76,7 @@ TEST_CASE("a bench leaves points, a page and images, and can draw its page again
 }
 
 TEST_CASE("a reference in another unit is noticed") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     REQUIRE(
         program.run({"render", "s.gltf", "-o", "r.exr", "--size", "16x8", "--passes", "256", "-q"}).code ==
@@ -93,7 +93,7 @@ TEST_CASE("a reference in another unit is noticed") {
 }
 
 TEST_CASE("a bench writes nothing over, and bad input is one line") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     write_text(program.folder / "file", "precious");
     std::filesystem::create_directory(program.folder / "full");
@@ -127,7 +127,7 @@ TEST_CASE("a bench writes nothing over, and bad input is one line") {
 }
 
 TEST_CASE("an interrupted bench writes the results so far and ends with 130") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     REQUIRE(program.run({"render", "s.gltf", "-o", "r.exr", "--size", "16x8", "--passes", "64", "-q"}).code ==
             0);

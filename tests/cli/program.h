@@ -22,7 +22,7 @@ struct Run {
     size_t error_lines() const { return size_t(std::count(err.begin(), err.end(), '\n')); }
 };
 
-struct Program {
+struct Executable {
     TemporaryFolder folder;  // the working folder of every run
     std::map<std::string, std::string> environment;
 

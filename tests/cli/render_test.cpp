@@ -28,7 +28,7 @@ std::span<const float> channel(const Image& image, const char* name) {
 }  // namespace
 
 TEST_CASE("a render writes an image with its attributes, layers and statistics") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     const Run run = program.run(with({"--passes", "8", "--aovs", "--stats", "stats.json"}));
     CAPTURE(run.err);
@@ -91,7 +91,7 @@ TEST_CASE("a render writes an image with its attributes, layers and statistics")
 }
 
 TEST_CASE("without --aovs an image has its colours only, and --quiet says nothing") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     const Run run = program.run(with({"--passes", "2", "--quiet"}));
     CHECK(run.code == 0);
@@ -101,7 +101,7 @@ TEST_CASE("without --aovs an image has its colours only, and --quiet says nothin
 }
 
 TEST_CASE("a resumed render is bit for bit the uninterrupted one") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     REQUIRE(program.run(with({"--passes", "13"})).code == 0);
     const Image whole = read_exr(program.folder / "out.exr");
@@ -122,7 +122,7 @@ TEST_CASE("a resumed render is bit for bit the uninterrupted one") {
 }
 
 TEST_CASE("an interrupted render writes the image so far and ends with 130") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     for (const int signal : {SIGINT, SIGTERM}) {
         std::filesystem::remove(program.folder / "out.exr");
@@ -143,7 +143,7 @@ TEST_CASE("an interrupted render writes the image so far and ends with 130") {
 }
 
 TEST_CASE("a render to an error stops when it is reached") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     CHECK(program.run(with({"--error", "0.02", "--stats", "stats.json"})).code == 0);
     const auto stats = nlohmann::json::parse(read_text(program.folder / "stats.json"));
@@ -151,7 +151,7 @@ TEST_CASE("a render to an error stops when it is reached") {
 }
 
 TEST_CASE("compare ends with 1 beyond its limit") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     REQUIRE(program.run(with({"--passes", "4"})).code == 0);
     std::filesystem::rename(program.folder / "out.exr", program.folder / "a.exr");
@@ -170,7 +170,7 @@ TEST_CASE("compare ends with 1 beyond its limit") {
 }
 
 TEST_CASE("inspect, classes and devices tell what there is") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     const Run inspect = program.run({"inspect", "s.gltf"});
     CAPTURE(inspect.err);
@@ -191,7 +191,7 @@ TEST_CASE("inspect, classes and devices tell what there is") {
 }
 
 TEST_CASE("a spectral image has a channel a bin, and is resumed with them") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     REQUIRE(program.run(with({"--passes", "12", "--spectral-bins", "4"})).code == 0);
     const Image whole = read_exr(program.folder / "out.exr");

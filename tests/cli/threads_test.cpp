@@ -21,7 +21,7 @@ const char* caustic =
 }  // namespace
 
 TEST_CASE("one, two and four threads give the same image of both directions, bit for bit") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", caustic);
     const auto image = [&](const std::string& threads, const std::string& seed) {
         program.environment["LP_NUM_THREADS"] = threads;

@@ -39,7 +39,7 @@ class ViewedScene {
         return {};
     }
 
-    Program program;
+    Executable program;
     XServer x;
     pid_t process = -1;
 };

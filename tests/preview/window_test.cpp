@@ -1,62 +1,13 @@
 // Real windows, driven by mouse and keys as a user does it.
 #include <doctest/doctest.h>
 
-#include "tests/preview/window_fixture.h"
+#include "tests/preview/two_balls.h"
 
 using namespace etendue;
 
-namespace {
-
-// A red and a green ball on a plate in white surroundings, seen by two cameras.
-const std::string two_balls =
-    R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3, 4]}],
-"nodes": [{"translation": [-0.8, 0, 0], "extensions": {"ETD_optics": {"geometry": {"class": "sphere", "radius": 0.6, "material": 0}}}},
-          {"translation": [0.8, 0.2, -1], "extensions": {"ETD_optics": {"geometry": {"class": "sphere", "radius": 0.8, "material": 1}}}},
-          {"translation": [0, -0.6, 0], "rotation": [-0.70710678, 0, 0, 0.70710678],
-           "extensions": {"ETD_optics": {"geometry": {"class": "rectangle", "size": [4, 4], "material": 2}}}},
-          {"name": "front", "camera": 0, "translation": [0, 0.5, 5]},
-          {"name": "side", "camera": 1, "translation": [5, 0.3, 0], "rotation": [0, 0.70710678, 0, 0.70710678]}],
-"materials": [{"extensions": {"ETD_optics": {"surface": {"class": "lambertian", "reflectance": [0.8, 0.1, 0.1]}}}},
-              {"extensions": {"ETD_optics": {"surface": {"class": "lambertian", "reflectance": [0.1, 0.7, 0.1]}}}},
-              {"extensions": {"ETD_optics": {"surface": {"class": "lambertian", "reflectance": 0.5}}}}],
-"cameras": [{"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.1}},
-            {"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 1.5, "znear": 0, "zfar": 100}}],
-"extensions": {"ETD_optics": {"environment": {"class": "constant", "radiance": 1}}}})";
-
-const std::vector<std::string> at_rest = {"--passes", "4", "--exposure", "0", "--algorithm", "backward"};
-
-std::vector<std::string> words_with(const std::string& size, std::vector<std::string> more = {}) {
-    std::vector<std::string> words = at_rest;
-    words.insert(words.end(), {"--size", size});
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-}
-
-Image headless(const Program& program, const std::string& size, const std::string& receiver = "front") {
-    const Run run = program.run({"render", "scene.gltf", "-q", "--passes", "4", "--algorithm", "backward",
-                                 "--size", size, "--receiver", receiver, "-o", "image.exr"});
-    REQUIRE_MESSAGE(run.code == 0, run.err);
-    return read_exr(program.folder / "image.exr");
-}
-
-// Half a step by rounding, and what 32-bit logarithms and powers add.
-constexpr double rounding = 0.6;
-
-bool shows(XServer& x, const Image& image, const ViewSettings& settings) {
-    double last = 0;
-    const bool shown = x.wait_until([&](const Screenshot& shot) {
-        last = greatest_difference(shot, image, settings);
-        return last < rounding;
-    });
-    if (!shown) MESSAGE("greatest difference of the last picture: ", last, "/255");
-    return shown;
-}
-
-}  // namespace
-
 TEST_CASE("the window shows the headless image, through every tone curve; panels lie on it") {
     ViewedScene view(two_balls, words_with("480x360"));
-    Program files;  // of the headless image
+    Executable files;  // of the headless image
     write_text(files.folder / "scene.gltf", two_balls);
     const Image image = headless(files, "480x360");
     ViewSettings settings;
@@ -85,7 +36,7 @@ TEST_CASE("the window shows the headless image, through every tone curve; panels
 
 TEST_CASE("drags, the wheel and keys move the camera, and R brings it back") {
     ViewedScene view(two_balls, words_with("320x240"));
-    Program files;
+    Executable files;
     write_text(files.folder / "scene.gltf", two_balls);
     const Image front = headless(files, "320x240"), side = headless(files, "320x240", "side");
     const ViewSettings settings;
@@ -129,7 +80,7 @@ TEST_CASE("drags, the wheel and keys move the camera, and R brings it back") {
 TEST_CASE("the question mark lists the keys") {
     ViewedScene view(two_balls, words_with("800x600"));
     view.x.key("Tab");
-    Program files;
+    Executable files;
     write_text(files.folder / "scene.gltf", two_balls);
     const Image image = headless(files, "800x600");
     REQUIRE(shows(view.x, image, {}));
@@ -142,7 +93,7 @@ TEST_CASE("the question mark lists the keys") {
 }
 
 TEST_CASE("without a display, without the module and with a bad scene there is one line") {
-    Program program;
+    Executable program;
     write_text(program.folder / "scene.gltf", two_balls);
     program.environment["DISPLAY"] = ":9999";
     Run run = program.run({"view", "scene.gltf"});
@@ -150,7 +101,7 @@ TEST_CASE("without a display, without the module and with a bad scene there is o
     CHECK(run.error_lines() == 1);
     CHECK(run.err.find("no window can be opened") != std::string::npos);
 
-    std::filesystem::copy_file(Program::path(), program.folder / "etendue");
+    std::filesystem::copy_file(Executable::path(), program.folder / "etendue");
     const std::string alone = (program.folder / "etendue").string();
     const std::string command =
         "cd " + program.folder.path.string() + " && ./etendue view scene.gltf 2>alone.txt";
@@ -170,7 +121,7 @@ TEST_CASE("without a display, without the module and with a bad scene there is o
 TEST_CASE("the executable itself needs no window library") {
     TemporaryFolder folder;
     const std::string list = (folder / "libraries.txt").string();
-    REQUIRE(std::system(("ldd " + Program::path() + " >" + list).c_str()) == 0);
+    REQUIRE(std::system(("ldd " + Executable::path() + " >" + list).c_str()) == 0);
     const std::string libraries = read_text(list);
     CHECK(libraries.find("libvulkan") != std::string::npos);
     for (const char* name : {"glfw", "imgui", "libX", "xcb", "wayland"}) {

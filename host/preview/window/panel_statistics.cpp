@@ -23,7 +23,7 @@ void draw_statistics_panel(ViewState& state) {
     if (!s.choice.reason.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", s.choice.reason.c_str());
     ImGui::Text("%llu triangles, %llu shapes, %llu lights", (unsigned long long)s.triangles,
                 (unsigned long long)s.shapes, (unsigned long long)s.lights);
-    ImGui::Text("%.1f MiB on %s", double(s.device_bytes) / 1048576.0, s.device.c_str());
+    ImGui::TextWrapped("%.1f MiB on %s", double(s.device_bytes) / 1048576.0, s.device.c_str());
     if (ImGui::TreeNode("time of kernels")) {
         for (const auto& [name, timing] : s.timings)
             ImGui::Text("%-20s %8.3f s %6llu x", name.c_str(), timing.seconds,

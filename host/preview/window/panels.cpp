@@ -61,6 +61,7 @@ void draw_help(ViewState& state) {
 }
 
 void draw_panels(ViewState& state) {
+    if (!state.panels) state.request.wants_errors = false;
     if (state.panels) {
         const float scale = state.content_scale;
         ImGui::SetNextWindowPos({margin * scale, margin * scale}, ImGuiCond_FirstUseEver);
@@ -73,11 +74,19 @@ void draw_panels(ViewState& state) {
         draw_statistics_panel(state);
         draw_film_panel(state);
         draw_camera_panel(state);
+        draw_probe_panel(state);
+        draw_objects_panel(state);
         ImGui::TextDisabled("? lists the keys, Tab hides the panels");
         ImGui::PopItemWidth();
         ImGui::End();
     }
     if (state.help) draw_help(state);
+    if (state.picture && state.panels) {
+        const ViewSettings shown = shown_settings(state);
+        if (shown.curve == ToneCurve::false_colors)
+            draw_color_scale(state, shown.lowest, shown.highest,
+                             state.picture->layer == Layer::error ? "error / value" : "cd/m²");
+    }
     draw_messages(state);
 }
 

@@ -9,7 +9,10 @@ void draw_panels(ViewState& state);  // all that are open
 void draw_camera_panel(ViewState& state);
 void draw_film_panel(ViewState& state);
 void draw_statistics_panel(ViewState& state);
+void draw_objects_panel(ViewState& state);
+void draw_probe_panel(ViewState& state);
 void draw_help(ViewState& state);
 void draw_messages(ViewState& state);
+void draw_color_scale(ViewState& state, double lowest, double highest, const char* unit);
 
 }  // namespace etendue

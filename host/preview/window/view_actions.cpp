@@ -31,6 +31,12 @@ const PreviewReceiver* shown_receiver(const ViewState& state) {
                              : &receivers[std::min<size_t>(state.request.receiver, receivers.size() - 1)];
 }
 
+ViewSettings shown_settings(const ViewState& state) {
+    if (!state.picture || state.picture->layer == Layer::radiance) return state.view;
+    const bool is_error = state.picture->layer == Layer::error;  // relative: from a thousandth to one
+    return {0, {}, is_error ? ToneCurve::false_colors : ToneCurve::linear, 0.001, 1};
+}
+
 void note(ViewState& state, const std::string& notice) {
     state.notice = notice;
     state.notice_at = glfwGetTime();
@@ -108,6 +114,46 @@ void save_image(ViewState& state) {
     });
 }
 
+// One edit is at work at a time, and of those that wait the last counts: a slider may be quicker than the
+// scene.
+void edit_object(ViewState& state, const ObjectEdit& edit) {
+    if (state.edit_is_made) {
+        state.edit = edit;
+        return;
+    }
+    state.edit_is_made = true;
+    state.session.post([results = state.results, edit](PreviewScene& scene) {
+        struct Done {
+            TaskResults& results;
+            ~Done() {
+                const std::lock_guard lock(results.mutex);
+                results.edited = true;
+            }
+        } done{*results};
+        if (edit.parameter.empty())
+            scene.next = scene.live.set_class(edit.object, edit.value.get<std::string>());
+        else
+            scene.next = scene.live.set_parameter(edit.object, edit.parameter, edit.value);
+    });
+}
+
+void read_pixel_at_pointer(ViewState& state) {
+    if (!state.picture || state.reading_is_made || state.request.moving) return;
+    const glm::uvec2 pixel(std::max(0.0, state.pointer_x), std::max(0.0, state.pointer_y));
+    if (pixel.x >= state.request.width || pixel.y >= state.request.height) return;
+    const bool grown = state.options.spectral_bins > 0 && state.status.passes > 5 * state.reading_passes / 4;
+    if (pixel == state.reading_pixel && state.reading_of == state.picture->request && !grown) return;
+    state.reading_pixel = pixel;
+    state.reading_of = state.picture->request;
+    state.reading_passes = state.status.passes;
+    state.reading_is_made = true;
+    state.session.post([results = state.results, pixel](PreviewScene& scene) {
+        const PixelReading reading = read_pixel(scene, pixel);
+        const std::lock_guard lock(results->mutex);
+        results->reading = reading;
+    });
+}
+
 void receive_news(ViewState& state) {
     state.session.rethrow_failure();
     const uint64_t scene_before = state.status.scene;
@@ -126,6 +172,16 @@ void receive_news(ViewState& state) {
         notice = std::exchange(state.results->notice, {});
         clipboard = std::exchange(state.results->clipboard, {});
         point = std::exchange(state.results->focus, {});
+        if (state.results->reading) {
+            state.reading = std::exchange(state.results->reading, {});
+            state.reading_is_made = false;
+        }
+        if (std::exchange(state.results->edited, false)) state.edit_is_made = false;
+    }
+    if (state.edit && !state.edit_is_made) edit_object(state, *std::exchange(state.edit, {}));
+    if (state.objects_from != state.status.objects && !state.edit && !state.edit_is_made) {
+        state.objects_from = state.status.objects;
+        if (state.objects_from) state.objects = *state.objects_from;
     }
     if (notice) note(state, *notice);
     if (clipboard) glfwSetClipboardString(state.window, clipboard->c_str());

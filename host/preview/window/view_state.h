@@ -5,6 +5,7 @@
 #include <string>
 
 #include "host/preview/camera_control.h"
+#include "host/preview/pixel_probe.h"
 #include "host/preview/session.h"
 #include "host/preview/view_transform.h"
 
@@ -17,6 +18,15 @@ struct TaskResults {
     std::mutex mutex;
     std::optional<std::string> notice, clipboard;
     std::optional<glm::dvec3> focus;  // point to turn around
+    std::optional<PixelReading> reading;
+    bool edited = false;  // an edit has been made, or refused
+};
+
+// An edit of an object of the scene: of a parameter, or of its class.
+struct ObjectEdit {
+    LiveObject object;
+    std::string parameter;  // empty = the class
+    nlohmann::json value;
 };
 
 struct ViewState {
@@ -38,11 +48,24 @@ struct ViewState {
     double notice_at = -1e9;
     double pointer_x = 0, pointer_y = 0;        // pixels of the framebuffer
     double longest_frame = 0, first_shown = 0;  // seconds; the latter since the start
+    // As the panel shows them: those of the scene, with what is being edited.
+    std::vector<LiveObject> objects;
+    std::shared_ptr<const std::vector<LiveObject>> objects_from;
+    std::optional<ObjectEdit> edit;  // that waits for the one before it
+    bool edit_is_made = false;       // one is at work
+    std::optional<PixelReading> reading;
+    glm::uvec2 reading_pixel{~0u};  // that was asked for last
+    PreviewRequest reading_of;
+    uint64_t reading_passes = 0;
+    bool reading_is_made = false;
     std::shared_ptr<TaskResults> results = std::make_shared<TaskResults>();
 };
 
 // The receiver that is shown; null before there is a scene.
 const PreviewReceiver* shown_receiver(const ViewState& state);
+
+// How the picture at hand is shown: layers other than radiance have settings of their own.
+ViewSettings shown_settings(const ViewState& state);
 
 void note(ViewState& state, const std::string& notice);
 void move_camera(ViewState& state, const CameraPose& pose);
@@ -50,6 +73,8 @@ void reset_camera(ViewState& state);
 void choose_receiver(ViewState& state, uint32_t index);
 void meter_exposure(ViewState& state);
 void focus_at_pointer(ViewState& state);
+void edit_object(ViewState& state, const ObjectEdit& edit);
+void read_pixel_at_pointer(ViewState& state);
 void copy_camera(ViewState& state);  // to the clipboard, as glTF
 void save_image(ViewState& state);   // EXR and (sRGB, with the exposure) PNG, in the current folder
 // Takes over what the session and its tasks have brought since the last frame.

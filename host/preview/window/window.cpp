@@ -103,13 +103,6 @@ void tell_session(ViewState& state) {
     state.session.request(state.request);
 }
 
-ViewSettings settings_for(const ViewState& state) {
-    ViewSettings settings = state.view;
-    if (state.picture->layer == Layer::radiance) return settings;
-    const bool is_error = state.picture->layer == Layer::error;  // relative: from a thousandth to one
-    return {0, {}, is_error ? ToneCurve::false_colors : ToneCurve::linear, 0.001, 1};
-}
-
 void write_view_stats(const ViewState& state, uint64_t presenter_bytes) {
     if (state.options.stats.empty()) return;
     const nlohmann::json stats = {{"first_picture_seconds", state.first_shown},
@@ -183,7 +176,7 @@ int run_view(const ViewOptions& options, double started) {
         draw_panels(state);
         ImGui::Render();
         if (state.picture) {
-            const ViewTransform view = view_transform(settings_for(state));
+            const ViewTransform view = view_transform(shown_settings(state));
             if (state.picture != developed || !developed_as || !(view == *developed_as)) {
                 presenter.develop(*state.picture, view);
                 developed = state.picture;

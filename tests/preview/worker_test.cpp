@@ -1,0 +1,181 @@
+// What answers a window's requests, without a window.
+#include "host/preview/worker.h"
+
+#include <doctest/doctest.h>
+
+#include "host/error.h"
+#include "host/preview/pixel_probe.h"
+#include "host/preview/receiver_placement.h"
+#include "tests/preview/two_balls.h"
+
+using namespace etendue;
+
+namespace {
+
+struct Viewed {
+    explicit Viewed(const std::string& text = two_balls, uint32_t spectral_bins = 0) {
+        write_text(folder / "scene.gltf", text);
+        ViewOptions options;
+        options.scene = folder / "scene.gltf";
+        options.passes = 4;
+        options.spectral_bins = spectral_bins;
+        worker = std::make_unique<PreviewWorker>(
+            options, [this] { return interrupt; }, [] {});
+        worker->open();
+        request.width = 64, request.height = 48;
+        request.algorithm = Algorithm::backward;
+    }
+    ~Viewed() {
+        worker->run_task([](PreviewScene& scene) { CHECK(scene.device.validation_messages.empty()); });
+    }
+    const PreviewPicture& rest() {
+        for (int i = 0; i < 100 && worker->work(request);) ++i;
+        REQUIRE(worker->picture());
+        CHECK(worker->picture()->request == request);
+        return *worker->picture();
+    }
+    const LiveObject& object(LiveObject::Part part, uint32_t index = 0) {
+        for (const LiveObject& o : *worker->status().objects)
+            if (o.part == part && o.index == index) return o;
+        throw std::runtime_error("no such object");
+    }
+    TemporaryFolder folder;
+    bool interrupt = false;
+    std::unique_ptr<PreviewWorker> worker;
+    PreviewRequest request;
+};
+
+float green(const PreviewPicture& p, uint32_t x, uint32_t y) { return p.radiance[y * p.width + x].y; }
+
+}  // namespace
+
+TEST_CASE("a picture begins coarse and rests at full size with the passes that were asked for") {
+    Viewed viewed;
+    REQUIRE(viewed.worker->work(viewed.request));
+    CHECK(viewed.worker->picture()->step == 8);
+    CHECK(viewed.worker->picture()->width == 8);
+    CHECK(viewed.worker->picture()->height == 6);
+    const PreviewPicture& picture = viewed.rest();
+    CHECK(picture.step == 1);
+    CHECK(picture.passes == 4);
+    CHECK(picture.radiance.size() == 64 * 48);
+    CHECK(viewed.worker->status().at_rest);
+    CHECK(!viewed.worker->work(viewed.request));
+}
+
+TEST_CASE("another size, camera, seed or algorithm begins anew; what is larger finds room") {
+    Viewed viewed;
+    const std::vector<glm::vec3> first = viewed.rest().radiance;
+    viewed.request.seed = 1;
+    CHECK(viewed.rest().radiance != first);
+    viewed.request.seed = 0;
+    CHECK(viewed.rest().radiance == first);
+    viewed.request.receiver = 1;
+    CHECK(viewed.rest().radiance != first);
+    viewed.request.receiver = 0;
+    viewed.request.width = 100, viewed.request.height = 80;
+    CHECK(viewed.rest().radiance.size() == 100 * 80);
+    viewed.request.width = 64, viewed.request.height = 48;
+    CHECK(viewed.rest().radiance == first);
+    viewed.request.placement = viewed.worker->status().receivers[0].placement;
+    CHECK(viewed.rest().radiance == first);
+    (*viewed.request.placement)[3].x += 0.5;
+    CHECK(viewed.rest().radiance != first);
+    viewed.request.placement.reset();
+    viewed.request.algorithm = Algorithm::bidirectional;
+    CHECK(viewed.rest().radiance != first);
+    CHECK(viewed.worker->status().choice.algorithm == Algorithm::bidirectional);
+    viewed.request.algorithm = Algorithm::automatic;
+    viewed.rest();
+    CHECK(viewed.worker->status().choice.algorithm == Algorithm::backward);
+    CHECK(viewed.worker->status().message == "");
+}
+
+TEST_CASE("an interrupted pass is not shown, and the next request is answered") {
+    Viewed viewed;
+    const std::vector<glm::vec3> first = viewed.rest().radiance;
+    const auto before = viewed.worker->picture();
+    viewed.request.seed = 5;
+    viewed.interrupt = true;
+    for (int i = 0; i < 3; ++i) CHECK(viewed.worker->work(viewed.request));
+    CHECK(viewed.worker->picture() == before);
+    viewed.interrupt = false;
+    viewed.request.seed = 0;
+    CHECK(viewed.rest().radiance == first);
+}
+
+TEST_CASE("an edit shows in the picture; one that is refused becomes a message, and nothing changes") {
+    Viewed viewed;
+    const std::vector<glm::vec3> first = viewed.rest().radiance;
+    const auto edit = [&](const nlohmann::json& value) {
+        const LiveObject object = viewed.object(LiveObject::Part::surface, 1);
+        viewed.worker->run_task([&](PreviewScene& scene) {
+            scene.next = scene.live.set_parameter(object, "reflectance", value);
+        });
+    };
+    const float before = green(viewed.rest(), 42, 26);  // of the green ball
+    edit({0.1, 0.35, 0.1});
+    CHECK(green(viewed.rest(), 42, 26) < 0.7f * before);
+    CHECK(viewed.worker->status().message == "");
+    const std::vector<glm::vec3> edited = viewed.rest().radiance;
+    edit(7.0);
+    CHECK(viewed.worker->status().is_error);
+    CHECK(viewed.worker->status().message.find("reflectance") != std::string::npos);
+    CHECK(viewed.rest().radiance == edited);
+    edit({0.1, 0.7, 0.1});
+    CHECK(viewed.rest().radiance == first);
+    CHECK(!viewed.worker->status().is_error);
+}
+
+TEST_CASE("layers: errors are known after some passes, normals point to the camera, depth is darker afar") {
+    Viewed viewed;
+    viewed.request.wants_errors = true;
+    const PreviewPicture& picture = viewed.rest();
+    REQUIRE(picture.errors.size() == picture.radiance.size());
+    CHECK(picture.shown.empty());
+    viewed.request.layer = Layer::error;
+    CHECK(viewed.rest().shown.size() == 64 * 48);
+    viewed.request.layer = Layer::normal;
+    const glm::vec3 normal = 2.0f * viewed.rest().shown[26 * 64 + 42] - 1.0f;
+    CHECK(normal.z > 0.5f);
+    viewed.request.layer = Layer::depth;
+    const PreviewPicture& depth = viewed.rest();
+    CHECK(depth.shown[31 * 64 + 21].x > depth.shown[26 * 64 + 42].x);  // the red ball is nearer
+    CHECK(depth.shown[0].x == 0);                                      // the sky
+    viewed.request.layer = Layer::albedo;
+    const glm::vec3 albedo = viewed.rest().shown[26 * 64 + 42];
+    CHECK(albedo.y == doctest::Approx(0.7).epsilon(0.05));
+}
+
+TEST_CASE("a pixel tells what it sees, and its spectrum where the film has bins") {
+    Viewed viewed(two_balls, 10);
+    viewed.rest();
+    PixelReading reading;
+    viewed.worker->run_task([&](PreviewScene& scene) { reading = read_pixel(scene, {42, 26}); });
+    REQUIRE(reading.seen.hit);
+    CHECK(reading.surface_class == "lambertian");
+    CHECK(reading.seen.material == 1);
+    // On the green ball, of radius 0.8 around (0.8, 0.2, -1); the camera stands at (0, 0.5, 5).
+    CHECK(glm::length(reading.seen.position - glm::dvec3(0.8, 0.2, -1)) ==
+          doctest::Approx(0.8).epsilon(1e-4));
+    CHECK(glm::length(reading.seen.position - glm::dvec3(0, 0.5, 5)) ==
+          doctest::Approx(double(reading.seen.distance)).epsilon(1e-4));
+    REQUIRE(reading.spectrum.size() == 10);
+    viewed.worker->run_task([&](PreviewScene& scene) { reading = read_pixel(scene, {2, 2}); });
+    CHECK(!reading.seen.hit);
+}
+
+TEST_CASE("a camera that is copied as glTF is the camera") {
+    Viewed viewed;
+    viewed.rest();
+    nlohmann::json gltf;
+    viewed.worker->run_task(
+        [&](PreviewScene& scene) { gltf = camera_as_gltf(scene.scene.receivers[1], 1.5); });
+    CHECK(gltf["cameras"][0]["type"] == "orthographic");
+    CHECK(gltf["cameras"][0]["orthographic"]["ymag"] == 1.5);
+    CHECK(gltf["cameras"][0]["orthographic"]["xmag"] == 2.25);
+    const auto matrix = gltf["nodes"][0]["matrix"].get<std::vector<double>>();
+    REQUIRE(matrix.size() == 16);
+    CHECK(matrix[12] == doctest::Approx(5));
+    CHECK(matrix[13] == doctest::Approx(0.3));
+}
