@@ -7,21 +7,11 @@
 namespace etendue {
 namespace {
 
-// Twin of struct ForwardPass in shaders/lib/forward_pass.glsl.
-struct ForwardPass {
-    uint32_t receiver, width, height, pass, seed, count;
-    float merge_scale, short_scale, path_flux, inverse_power, splat_unit;
-};
-
 constexpr double short_edge_pixels = 32.0;  // so much shorter than the image that longer edges connect well
 constexpr uint32_t vertices_a_path = 16;    // for which room is kept, if there is as much
 // At least: of the longest path. Between surfaces Russian roulette lets one live for 1024 with probability
 // 1e-21; in media that scatter and hardly absorb only MAX_DEPTH of shaders/lib/path.glsl ends them.
 constexpr uint64_t least_vertices = 1024, least_vertices_in_media = 65536;
-
-uint32_t path_count(const RenderSettings& s) {
-    return uint32_t(std::clamp(s.forward_paths * s.width * s.height, 1.0, double(1 << 24)));
-}
 
 }  // namespace
 
@@ -31,13 +21,34 @@ double merge_radius_factor(uint64_t pass) {
     return std::exp(0.5 * (std::lgamma(i + alpha) - std::lgamma(1 + alpha) - std::lgamma(i + 1)));
 }
 
+uint32_t forward_paths_a_pass(const RenderSettings& settings) {
+    return uint32_t(
+        std::clamp(settings.forward_paths * settings.width * settings.height, 1.0, double(1 << 24)));
+}
+
+ForwardPass describe_pass(const Scene& scene, const RenderSettings& settings, uint64_t pass, uint32_t count,
+                          uint32_t seed) {
+    const double pixels = double(settings.width) * settings.height;
+    ForwardPass values{};
+    values.receiver = settings.receiver;
+    values.width = settings.width, values.height = settings.height;
+    values.pass = uint32_t(pass);
+    values.seed = seed + count * 0x9E3779B9u;  // other counts take other sequences
+    values.count = count;
+    values.merge_scale = float(settings.merge_radius * merge_radius_factor(pass) / std::sqrt(pixels));
+    values.short_scale = float(short_edge_pixels / std::sqrt(pixels));
+    values.path_flux = float(scene.power / count);
+    values.inverse_power = float(1 / scene.power);
+    values.splat_unit = float(scene.power / (4 * std::pow(std::numbers::pi * scene.radius, 2)));
+    return values;
+}
+
 ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& settings,
                          const Techniques& techniques, const BufferTable& film)
-    : settings_(settings),
+    : scene_(scene),
+      settings_(settings),
       techniques_(techniques),
-      power_(scene.power),
-      radius_(scene.radius),
-      all_(path_count(settings)),
+      all_(forward_paths_a_pass(settings)),
       count_(all_),
       pass_(device, sizeof(ForwardPass), "ForwardPassTable"),
       splats_(device, uint64_t(settings.width) * settings.height * (scene.features.spectral ? 32 : 24),
@@ -75,25 +86,10 @@ BufferTable ForwardRays::buffers() const {
     return table;
 }
 
-void ForwardRays::write_pass(uint64_t pass, uint32_t seed) {
-    const double pixels = double(settings_.width) * settings_.height;
-    ForwardPass values{};
-    values.receiver = settings_.receiver;
-    values.width = settings_.width, values.height = settings_.height;
-    values.pass = uint32_t(pass);
-    values.seed = seed + count_ * 0x9E3779B9u;  // other counts take other sequences
-    values.count = count_;
-    values.merge_scale = float(settings_.merge_radius * merge_radius_factor(pass) / std::sqrt(pixels));
-    values.short_scale = float(short_edge_pixels / std::sqrt(pixels));
-    values.path_flux = float(power_ / count_);
-    values.inverse_power = float(1 / power_);
-    values.splat_unit = float(power_ / (4 * std::pow(std::numbers::pi * radius_, 2)));
-    pass_.write(&values, sizeof values);
-}
-
 void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings) {
     while (true) {
-        write_pass(pass, seed);
+        const ForwardPass values = describe_pass(scene_, settings_, pass, count_, seed);
+        pass_.write(&values, sizeof values);
         if (vertices_) vertices_->clear(commands);
         trace_paths(commands, timings);
         paths_ += count_;
@@ -122,7 +118,7 @@ void ForwardRays::trace_paths(CommandList& commands, KernelTimings& timings) {
 void ForwardRays::restart(const FilmView& view) {
     settings_.receiver = view.receiver;
     settings_.width = view.width, settings_.height = view.height;
-    all_ = path_count(settings_);
+    all_ = forward_paths_a_pass(settings_);
     resume(0);
 }
 

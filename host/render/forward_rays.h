@@ -15,6 +15,17 @@ namespace etendue {
 // - 1) with alpha = 2/3 (Knaus & Zwicker 2011, eq. 13), so that bias and variance both vanish.
 double merge_radius_factor(uint64_t pass);
 
+// Twin of struct ForwardPass in shaders/lib/forward_pass.glsl.
+struct ForwardPass {
+    uint32_t receiver, width, height, pass, seed, count;
+    float merge_scale, short_scale, path_flux, inverse_power, splat_unit;
+};
+// Where there is room for their vertices.
+uint32_t forward_paths_a_pass(const RenderSettings& settings);
+// Of a pass with `count` forward paths.
+ForwardPass describe_pass(const Scene& scene, const RenderSettings& settings, uint64_t pass, uint32_t count,
+                          uint32_t seed);
+
 class ForwardRays {
   public:
     // settings.schedule must not be automatic.
@@ -36,11 +47,9 @@ class ForwardRays {
 
   private:
     void trace_paths(CommandList& commands, KernelTimings& timings);
-    void write_pass(uint64_t pass, uint32_t seed);
+    const Scene& scene_;
     RenderSettings settings_;
     Techniques techniques_;
-    double power_;          // of all lights, lm
-    float radius_;          // m, of the scene
     uint32_t all_, count_;  // forward paths a pass: where their vertices fit, and now
     uint64_t paths_ = 0, splits_ = 0;
     uint32_t expected_vertices_ = 0;

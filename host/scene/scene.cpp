@@ -124,7 +124,10 @@ void SceneCompiler::add_media() {
     for (const MediumDescription& medium : in_.media)
         added.push_back(add_record(Interface::medium, medium.medium));
     const auto refs = references(Interface::medium, added);
-    for (size_t i = 0; i < refs.size(); ++i) resolver_.media[in_.media[i].name] = refs[i];
+    for (size_t i = 0; i < refs.size(); ++i) {
+        resolver_.media[in_.media[i].name] = refs[i];
+        out_.medium_names[refs[i]] = in_.media[i].name;
+    }
     if (refs.empty()) return;
     out_.features.interfaces = true;
     write_headers();

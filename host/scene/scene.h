@@ -51,6 +51,10 @@ struct Scene {
     std::vector<Receiver> receivers;
     uint64_t receiver_moves = 0;  // calls of move_receiver
     std::vector<std::string> warnings;
+    // As the scene file has them: of materials, of lights in their order on the device (of area lights the
+    // material's), of media by RecordRef.
+    std::vector<std::string> material_names, light_names;
+    std::map<uint32_t, std::string> medium_names;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;
     glm::dvec3 center{0};  // of the device's world coordinates
     float radius = 0;      // m, of a sphere around everything

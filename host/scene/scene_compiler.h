@@ -119,6 +119,7 @@ class SceneCompiler {
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
     std::map<std::string, uint32_t> phases_;                       // RecordRefs, by their places in the scene
     std::vector<uint32_t> lights_;                                 // RecordRefs
+    std::vector<std::string> light_names_;                         // in the same order
     uint32_t first_area_light_ = 0;                                // in lights_, before they are sorted
     std::vector<uint32_t> area_primitives_;                        // of each area light
 };

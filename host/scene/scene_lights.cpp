@@ -32,9 +32,11 @@ void SceneCompiler::add_lights() {
     } else if (in_.environment) {
         infinite.push_back(add_record(Interface::light, *in_.environment));
     }
+    light_names_.assign(infinite.size(), "environment");
     for (const PlacedObject& light : in_.lights) {
         const Added added = add_record(Interface::light, light.object, recentred(light.world_from_local));
         finite.push_back(added);  // sorted by what measure_lights finds
+        light_names_.push_back(light.name);
     }
     for (uint32_t i = 0; i < memory_.world.world_primitives; ++i) {
         const PrimitiveRecord& p = memory_.world.primitives[i];
@@ -49,6 +51,7 @@ void SceneCompiler::add_lights() {
         for (uint32_t i : area_primitives_) {
             records_[Interface::light].add(info, area_record(info, i, memory_.world.primitives[i].material));
             area.push_back({&info, uint32_t(area.size())});
+            light_names_.push_back(in_.materials[memory_.world.primitives[i].material].name);
         }
     }
     std::vector<Added> all = infinite;
@@ -120,6 +123,7 @@ void SceneCompiler::measure_lights() {
     for (uint32_t position = 0; position < order.size(); ++position) {
         const uint32_t i = order[position];
         sorted_lights.push_back(lights_[i]);
+        out_.light_names.push_back(light_names_[i]);
         sorted_bounds.push_back(bounds[i]);
         powers.push_back(bounds[i].power);
         out_.power += bounds[i].power;

@@ -49,6 +49,7 @@ void SceneCompiler::add_materials() {
             fill_record(find_class(Interface::surface, m.surface), m.surface, {}, resolver_);
         }
         materials_.push_back(record);
+        out_.material_names.push_back(m.name);
     }
     const auto refs = references(Interface::surface, surfaces);
     for (size_t i = 0; i < refs.size(); ++i) materials_[places[i]].surface = refs[i];

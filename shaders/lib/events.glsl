@@ -53,9 +53,23 @@ void pass_faces(inout Path path, SurfacePoint p, Crossing c) {
 }
 #endif
 
+#ifdef RECORD_PATHS
+// For kernels/record_paths.comp.
+struct RecordedEvent {
+    vec3 position;
+    uint event, material, light;
+    float arriving;  // luminance of what the path carries there
+    bool happened, followed;
+};
+RecordedEvent recorded_event;
+#endif
+
 // The path goes on along the sampled direction. False: it is absorbed.
 bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEvent event, VertexMis mis) {
     BsdfSample b = event.next;
+#ifdef RECORD_PATHS
+    recorded_event = RecordedEvent(p.position, b.event, p.material, p.light, luminance(path.throughput), true, false);
+#endif
     if (b.event == EVENT_NONE || is_black(b.weight)) return false;
     bool straight = (b.event & EVENT_STRAIGHT) != 0u;
     vec3 direction = straight ? path.direction : normalize(s.frame * b.wi);
@@ -93,6 +107,9 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
     path.medium = medium_among(path.bodies);
 #else
     path.medium = scattering_medium(s, direction);
+#endif
+#ifdef RECORD_PATHS
+    recorded_event.followed = true;
 #endif
     return true;
 }

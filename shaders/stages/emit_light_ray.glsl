@@ -7,6 +7,10 @@
 #include "lib/path.glsl"
 #include "lib/start_media.glsl"
 
+#ifdef RECORD_PATHS
+uint recorded_light;
+#endif
+
 Path emit_light_ray(uint index) {
     Path path;
     path.random = start_forward_sampler(forward_pass.pass, index, forward_pass.count, forward_pass.seed);
@@ -40,5 +44,8 @@ Path emit_light_ray(uint index) {
     path.light_normal = ray.normal;
 #endif
     path.vertices = uvec2(NO_RECORD, 0u);
+#ifdef RECORD_PATHS
+    recorded_light = light;
+#endif
     return path;
 }

@@ -1,0 +1,184 @@
+#include "host/render/path_record.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/error.h"
+#include "host/render/forward_rays.h"
+#include "host/render/start_media.h"
+#include "host/spectra/color.h"
+#include "host/spectra/wavelengths.h"
+
+namespace etendue {
+
+// Twin of the struct in shaders/kernels/record_paths.comp.
+struct DeviceVertex {
+    glm::vec3 position;
+    uint32_t event;
+    uint32_t material, light, medium;
+    float arriving, leaving;
+    glm::vec3 rgb;
+    glm::vec4 throughput;
+};
+static_assert(sizeof(DeviceVertex) == 64);
+
+namespace {
+
+// EVENT_… of shaders/interfaces/surface_optics.glsl and RECORDED_… of record_paths.comp.
+enum EventBits : uint32_t {
+    reflect = 1,
+    transmit = 2,
+    delta = 4,
+    straight = 8,
+    emission = 16,
+    escape = 32,
+    roulette = 64
+};
+
+constexpr uint32_t most_paths = 4096;  // of a dispatch
+
+PathEvent event_of(const DeviceVertex& v) {
+    if (v.event & emission) return PathEvent::emitted;
+    if (v.event & escape) return PathEvent::escaped;
+    if ((v.event & (reflect | transmit | straight)) == 0) return PathEvent::absorbed;
+    if (v.event & straight) return PathEvent::straight;
+    if (v.material == no_record) return PathEvent::scattered;
+    return v.event & transmit ? PathEvent::refracted : PathEvent::reflected;
+}
+
+}  // namespace
+
+const char* event_name(PathEvent event) {
+    switch (event) {
+        case PathEvent::emitted:
+            return "emitted";
+        case PathEvent::reflected:
+            return "reflected";
+        case PathEvent::refracted:
+            return "refracted";
+        case PathEvent::straight:
+            return "straight";
+        case PathEvent::scattered:
+            return "scattered";
+        case PathEvent::absorbed:
+            return "absorbed";
+        default:
+            return "escaped";
+    }
+}
+
+double wavelength_at(const RecordedPath& path, const PathVertex& vertex) {
+    const glm::vec4& t = vertex.throughput;
+    return t.x > 0 && t.y == 0 && t.z == 0 && t.w == 0 ? double(path.wavelengths.x) : 0.0;
+}
+
+glm::vec3 line_color(const RecordedPath& path, const PathVertex& vertex) {
+    glm::dvec3 rgb = vertex.color;
+    if (const double nm = wavelength_at(path, vertex); nm > 0)
+        rgb = rgb_weights()[size_t(std::clamp(std::lround(nm) - first_nm, 0L, spectrum_samples - 1L))];
+    rgb = glm::max(rgb, glm::dvec3(0));  // of the spectral colours most lie outside of Rec.709
+    const double greatest = std::max({rgb.x, rgb.y, rgb.z});
+    return greatest > 0 ? glm::vec3(rgb / greatest) : glm::vec3(0);
+}
+
+bool PathFilter::keeps(const RecordedPath& path) const {
+    return std::any_of(path.vertices.begin(), path.vertices.end(), [&](const PathVertex& v) {
+        return (events.empty() || events.count(v.event)) && (objects.empty() || objects.count(v.object));
+    });
+}
+
+PathRecorder::PathRecorder(Device& device, Scene& scene, const RenderSettings& settings, bool forward,
+                           uint32_t most_vertices)
+    : device_(device),
+      scene_(scene),
+      settings_(settings),
+      forward_(forward),
+      room_(std::max(2u, most_vertices)),
+      paths_(settings.width * settings.height),
+      spectra_(device, scene),
+      start_media_(std::make_unique<StartMedia>(device, scene, forward)),
+      commands_(device) {
+    if (forward && !(scene.power > 0)) fail_input("the scene has no light: there are no forward paths");
+    if (forward) paths_ = forward_paths_a_pass(settings);
+    batch_ = std::min(paths_, most_paths);
+    forward_pass_ = Buffer(device, sizeof(ForwardPass), "ForwardPassTable");
+    indices_ = Buffer(device, uint64_t(batch_) * 4, "PathIndices");
+    vertices_ = Buffer(device, uint64_t(batch_) * room_ * sizeof(DeviceVertex), "PathVertices");
+    counts_ = Buffer(device, uint64_t(batch_) * 4, "PathCounts");
+    Techniques techniques;
+    techniques.forward = forward;
+    BufferTable table = {{"ForwardPassTable", &forward_pass_},
+                         {"PathIndices", &indices_},
+                         {"PathVertices", &vertices_},
+                         {"PathCounts", &counts_},
+                         {"StartMedia", &start_media_->buffer()}};
+    table.merge(spectra_.buffers());
+    kernel_ = make_kernel(device, scene, "kernels/record_paths.comp", table,
+                          forward ? techniques.forward_defines() : techniques.backward_defines());
+    start_media_->find(settings_.receiver, float(settings.width) / float(settings.height));
+}
+
+PathRecorder::~PathRecorder() = default;
+
+PathVertex PathRecorder::vertex_of(const DeviceVertex& v, double unit) const {
+    PathVertex vertex;
+    vertex.event = event_of(v);
+    vertex.smooth = vertex.event != PathEvent::scattered && (v.event & delta);
+    vertex.roulette = v.event & roulette;
+    vertex.position = glm::dvec3(v.position) + scene_.center;
+    if (vertex.event == PathEvent::scattered) {
+        const auto medium = scene_.medium_names.find(v.medium);
+        if (medium != scene_.medium_names.end()) vertex.object = medium->second;
+    } else if (v.material < scene_.material_names.size()) {
+        vertex.object = scene_.material_names[v.material];
+    } else if (v.light < scene_.light_names.size()) {
+        vertex.object = scene_.light_names[v.light];
+    }
+    vertex.arriving = unit * v.arriving, vertex.leaving = unit * v.leaving;
+    vertex.throughput = v.throughput;
+    vertex.color = float(unit) * v.rgb;
+    return vertex;
+}
+
+std::vector<RecordedPath> PathRecorder::record(uint64_t pass, std::span<const uint32_t> indices) {
+    double unit = 1;
+    if (forward_) {
+        const ForwardPass values = describe_pass(scene_, settings_, pass, paths_, settings_.seed);
+        forward_pass_.write(&values, sizeof values);
+        unit = values.path_flux;
+    } else {
+        start_media_->find_of_receiver(settings_.receiver, float(settings_.width) / float(settings_.height));
+    }
+    spectra_.write(pass, 1, settings_.seed);
+    const glm::vec4 nm =
+        scene_.features.spectral ? choose_wavelengths(pass, settings_.seed).nm : glm::vec4(0);
+    std::vector<RecordedPath> paths;
+    for (size_t first = 0; first < indices.size(); first += batch_) {
+        const uint32_t count = uint32_t(std::min<size_t>(batch_, indices.size() - first));
+        for (const uint32_t i : indices.subspan(first, count))
+            if (i >= paths_) fail_input("path {}: a pass has {} of them", i, paths_);
+        indices_.write(&indices[first], uint64_t(count) * 4);
+        commands_.dispatch(kernel_, (count + kernel_.group_size() - 1) / kernel_.group_size(),
+                           {{"count", count},
+                            {"room", room_},
+                            {"receiver", settings_.receiver},
+                            {"width", settings_.width},
+                            {"height", settings_.height},
+                            {"pass", uint32_t(pass)},
+                            {"seed", settings_.seed}});
+        commands_.run();
+        const auto counts = counts_.read_array<uint32_t>(count);
+        for (uint32_t i = 0; i < count; ++i) {
+            RecordedPath path{forward_, pass, indices[first + i], nm, {}, false};
+            for (const DeviceVertex& v : vertices_.read_array<DeviceVertex>(counts[i], uint64_t(i) * room_))
+                path.vertices.push_back(vertex_of(v, unit));
+            const PathVertex& last = path.vertices.back();
+            path.is_cut = !last.roulette && last.event != PathEvent::escaped &&
+                          last.event != PathEvent::absorbed && last.leaving > 0;
+            paths.push_back(std::move(path));
+        }
+    }
+    return paths;
+}
+
+}  // namespace etendue

@@ -1,0 +1,92 @@
+// Paths of light to be looked at: where they go, what befalls them, what they carry. They are traced by the
+// stages and the random numbers of the renderer.
+#pragma once
+#include <array>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/render/renderer.h"
+
+namespace etendue {
+
+enum class PathEvent {
+    emitted,    // at a light, or at the receiver
+    reflected,  // at a surface
+    refracted,  // through a surface, bent or scattered
+    straight,   // through a surface as if it were not there
+    scattered,  // in a medium
+    absorbed,   // the path ends; it carries nothing on
+    escaped,    // the path leaves the scene: a point at the scene's radius from where it did so
+};
+const char* event_name(PathEvent event);
+
+struct PathVertex {
+    PathEvent event = PathEvent::emitted;
+    bool smooth = false;     // reflected or refracted in one direction only
+    bool roulette = false;   // Russian roulette or the depth limit ended the path here
+    glm::dvec3 position{0};  // m, in the coordinates of the scene file
+    std::string object;  // name of the material, of the medium where it scattered, of the light it came from
+    // What the path carries when it arrives and when it goes on. Forward: lm. Backward: the share of a
+    // radiance along the ray that reaches the pixel.
+    double arriving = 0, leaving = 0;
+    glm::vec4 throughput{
+        0};              // … when it goes on, of each wavelength, or of linear R, G, B; in units of its own
+    glm::vec3 color{0};  // … as linear Rec.709 of the same sum as `leaving`
+};
+
+struct RecordedPath {
+    bool forward = false;
+    uint64_t pass = 0;
+    uint32_t index = 0;                // of the pixel, row by row, or of the forward path
+    glm::vec4 wavelengths{0};          // nm; 0 in colours. Where they have parted only the first is left.
+    std::vector<PathVertex> vertices;  // the first one was emitted
+    bool is_cut = false;               // there were more than there is room for
+};
+
+// nm, of the only wavelength that is left at the vertex; 0 where there are several, or colours.
+double wavelength_at(const RecordedPath& path, const PathVertex& vertex);
+// For a line behind the vertex: linear Rec.709 within [0, 1], the greatest channel 1: that of the wavelength
+// that is left, by the CIE observer, else of what the path carries. Black where it carries nothing.
+glm::vec3 line_color(const RecordedPath& path, const PathVertex& vertex);
+
+// Keeps paths that have a vertex of one of the events at one of the objects; empty = any.
+struct PathFilter {
+    std::set<PathEvent> events;
+    std::set<std::string> objects;
+    bool keeps(const RecordedPath& path) const;
+};
+
+class StartMedia;
+struct DeviceVertex;
+
+class PathRecorder {
+  public:
+    // Of the image that the settings describe: its receiver, size and seed; with forward paths as many a
+    // pixel as they say. Compiles a kernel unless the device has it. `most_vertices`: of a path, at least 2.
+    PathRecorder(Device& device, Scene& scene, const RenderSettings& settings, bool forward,
+                 uint32_t most_vertices = 64);
+    ~PathRecorder();
+
+    uint32_t paths_a_pass() const { return paths_; }  // pixels, or forward paths
+    // Those paths of a pass, by their indices, all less than paths_a_pass(). Receivers are where they are
+    // now.
+    std::vector<RecordedPath> record(uint64_t pass, std::span<const uint32_t> indices);
+
+  private:
+    PathVertex vertex_of(const DeviceVertex& v, double unit) const;
+    Device& device_;
+    Scene& scene_;
+    RenderSettings settings_;
+    bool forward_;
+    uint32_t room_, paths_, batch_;
+    SpectralPasses spectra_;
+    std::unique_ptr<StartMedia> start_media_;
+    Buffer forward_pass_, indices_, vertices_, counts_;
+    Kernel kernel_;
+    CommandList commands_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,86 @@
+// Paths written down event by event, to be looked at: a lane a path, by the stages and random numbers of the renderer, so that
+// backward path `i` of a pass is that of pixel i, and forward path `i` the i-th. Nothing is connected or merged.
+// Reads: scene, path indices. Writes: path vertices, their number. Barrier expected: after the dispatch.
+layout(local_size_x = 64) in;
+
+layout(push_constant) uniform Push {
+    uint count;  // of the paths
+    uint room;   // for vertices of a path; what is longer is cut
+    uint receiver, width, height, pass, seed;  // of backward paths
+};
+
+#define RECORD_PATHS
+#if FORWARD
+#include "stages/emit_light_ray.glsl"
+#include "stages/scatter_forward_path.glsl"
+#else
+#include "stages/emit_camera_ray.glsl"
+#include "stages/scatter_path.glsl"
+#endif
+
+// Twins of the bits and of struct DeviceVertex in host/render/path_record.cpp; below them are those of EVENT_….
+const uint RECORDED_EMISSION = 16u;
+const uint RECORDED_ESCAPE = 32u;
+const uint RECORDED_ROULETTE = 64u;  // the event was the last one by Russian roulette or the depth limit
+struct DeviceVertex {
+    vec3 position;
+    uint event;
+    uint material, light, medium;  // medium: that the ray arrives in
+    float arriving, leaving;       // luminance of what the path carries
+    vec3 rgb;                      // … its colour behind the event
+    vec4 throughput;               // … lane by lane
+};
+layout(scalar, set = 0) readonly buffer PathIndices { uint path_indices[]; };
+layout(scalar, set = 0) writeonly buffer PathVertices { DeviceVertex path_vertices[]; };
+layout(scalar, set = 0) writeonly buffer PathCounts { uint path_counts[]; };
+
+vec4 all_lanes(Spectrum s) {
+    vec4 lanes = vec4(0);
+    for (uint i = 0u; i < LANES; ++i) lanes[i] = s[i];
+    return lanes;
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+#if FORWARD
+    Path path = emit_light_ray(path_indices[i]);
+    uint light = recorded_light;
+#else
+    uint pixel = path_indices[i];
+    Path path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), pass, seed);
+    uint light = NO_RECORD;
+#endif
+    float carried = luminance(path.throughput);
+    path_vertices[i * room] = DeviceVertex(path.origin, RECORDED_EMISSION, NO_RECORD, light, path.medium, carried, carried,
+                                           spectrum_rgb(path.throughput), all_lanes(path.throughput));
+    path_counts[i] = 1u;
+    Counters counters;
+    bool alive = !is_black(path.throughput);
+    for (uint n = 1u; alive && n < room;) {
+        DeviceVertex v;
+        v.medium = path.medium;
+        vec3 origin = path.origin, direction = path.direction;
+        recorded_event.happened = recorded_event.followed = false;
+        Hit hit = find_hit(origin, direction, INFINITY);
+        ShadowRay shadow;
+#if FORWARD
+        alive = scatter_forward_path(path, hit, path_indices[i], counters, shadow);
+#else
+        alive = scatter_path(path, hit, counters, shadow);
+#endif
+        if (alive && !recorded_event.happened) continue;  // past faces that are not there
+        bool escapes = !recorded_event.happened, ends = !escapes && !recorded_event.followed;
+        v.position = escapes ? origin + SCENE_RADIUS * direction : recorded_event.position;
+        v.event = escapes ? RECORDED_ESCAPE : ends ? EVENT_NONE : recorded_event.event | (alive ? 0u : RECORDED_ROULETTE);
+        v.material = escapes ? NO_RECORD : recorded_event.material;
+        v.light = escapes ? NO_RECORD : recorded_event.light;
+        if (ends) path.throughput = Spectrum(0);
+        v.leaving = luminance(path.throughput);
+        v.arriving = escapes ? v.leaving : recorded_event.arriving;
+        v.rgb = spectrum_rgb(path.throughput);
+        v.throughput = all_lanes(path.throughput);
+        path_vertices[i * room + n] = v;
+        path_counts[i] = ++n;
+    }
+}
