@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "host/cli_values.h"
+#include "host/cli_rays.h"
 #include "host/cli_view.h"
 #include "host/error.h"
 
@@ -251,23 +252,26 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     BenchArguments bench_arguments;
     ViewOptions view_options;
     ViewArguments view_arguments;
+    RaysOptions rays_options;
+    RaysArguments rays_arguments;
     InspectOptions inspect_options;
     ClassesOptions classes_options;
     CLI::App* render = add_render(app, render_options, render_arguments);
     CLI::App* compare = add_compare(app, compare_options, max_relmse);
     CLI::App* bench = add_bench(app, bench_options, bench_arguments);
     CLI::App* view = add_view(app, view_options, view_arguments);
+    CLI::App* rays = add_rays(app, rays_options, rays_arguments);
     CLI::App* inspect = add_inspect(app, inspect_options);
     CLI::App* classes = add_classes(app, classes_options);
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
 
-    const auto commands = {render, view, compare, bench, inspect, classes, devices};
+    const auto commands = {render, view, rays, compare, bench, inspect, classes, devices};
     std::string first = argc < 2 ? "" : argv[1];
     bool known = first.starts_with("-");
     for (CLI::App* command : commands) known = known || first == command->get_name();
     if (!known)
-        fail_input("{}; one of: render, view, compare, bench, inspect, classes, devices (see etendue --help)",
+        fail_input("{}; one of: render, view, rays, compare, bench, inspect, classes, devices (see etendue --help)",
                    argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
 
     CLI::App* chosen = &app;
@@ -298,6 +302,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     if (bench->parsed()) {
         finish_bench(bench_options, bench_arguments);
         return bench_options;
+    }
+    if (rays->parsed()) {
+        finish_rays(rays_options, rays_arguments);
+        return rays_options;
     }
     if (view->parsed()) {
         finish_view(view_options, view_arguments);

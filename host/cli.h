@@ -12,7 +12,7 @@ struct TextAnswer {  // --help and --version
     std::string text;
 };
 using CommandLine = std::variant<TextAnswer, RenderOptions, CompareOptions, BenchOptions, ViewOptions,
-                                 InspectOptions, ClassesOptions, DevicesOptions>;
+                                 RaysOptions, InspectOptions, ClassesOptions, DevicesOptions>;
 
 // Fails with one line (exit code 2) where the arguments are wrong.
 CommandLine parse_command_line(int argc, const char* const* argv);

@@ -75,6 +75,14 @@ struct BenchOptions : SceneChoice {             // `scene` is each of `scenes` i
     bool quiet = false;
 };
 
+struct RaysOptions : SceneChoice {
+    std::filesystem::path output;  // .json, .csv or .glb
+    uint32_t paths = 1000;
+    bool backward = false;  // from the receiver, through pixels spread over its image; else from the lights
+    std::vector<std::string> events, objects;  // only paths with such an event there; empty = any
+    uint64_t seed = 0;
+};
+
 struct ClassesOptions {
     std::string name;  // empty = all
     std::filesystem::path shaders;
@@ -84,6 +92,7 @@ int render_command(const RenderOptions& options);
 int compare_command(const CompareOptions& options);
 int bench_command(const BenchOptions& options);
 int view_command(const ViewOptions& options);
+int rays_command(const RaysOptions& options);
 int inspect_command(const InspectOptions& options);
 int classes_command(const ClassesOptions& options);
 int devices_command();

@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
                                  [](const CompareOptions& o) { return compare_command(o); },
                                  [](const BenchOptions& o) { return bench_command(o); },
                                  [](const ViewOptions& o) { return view_command(o); },
+                                 [](const RaysOptions& o) { return rays_command(o); },
                                  [](const InspectOptions& o) { return inspect_command(o); },
                                  [](const ClassesOptions& o) { return classes_command(o); },
                                  [](const DevicesOptions&) { return devices_command(); }},

@@ -1,0 +1,63 @@
+#include "host/cli_rays.h"
+
+#include <CLI/CLI.hpp>
+
+#include "host/cli_values.h"
+
+namespace etendue {
+namespace {
+
+std::vector<std::string> names(const std::optional<std::string>& text) {
+    std::vector<std::string> list;
+    if (!text) return list;
+    for (size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+        end = text->find(',', begin);
+        list.push_back(text->substr(begin, end - begin));
+    }
+    return list;
+}
+
+}  // namespace
+
+CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments) {
+    CLI::App* rays = app.add_subcommand("rays", "Paths of light as lines: where they go, what befalls them");
+    rays->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
+    rays->add_option(
+            "-o,--output", options.output,
+            "All that is known (.json), a row a vertex (.csv), or lines to be laid over the scene (.glb)")
+        ->required()
+        ->option_text("FILE.json|csv|glb");
+    rays->add_option("--paths", arguments.paths, "How many are traced (default: 1000)")->option_text("N");
+    rays->add_option("--from", arguments.from, "Where they start (default: lights)")
+        ->option_text("lights|receiver");
+    rays->add_option(
+            "--events", arguments.events,
+            "Keep paths with one of: emitted, reflected, refracted, straight, scattered, absorbed, escaped")
+        ->option_text("E,…");
+    rays->add_option("--objects", arguments.objects,
+                     "Keep paths with an event at one of these, by their names")
+        ->option_text("NAME,…");
+    rays->add_option("--size", arguments.size, "Of the image, whose pixels the receiver's paths go through")
+        ->option_text("WxH");
+    rays->add_option("--receiver", options.receiver, "As for render")->option_text("NAME");
+    rays->add_option("--environment", options.environment, "As for render")->option_text("FILE.hdr|exr");
+    rays->add_option("--color", arguments.color, "As for render")->option_text("auto|rgb|spectral");
+    rays->add_option("--sampler", arguments.sampler, "As for render")->option_text("sobol|independent");
+    rays->add_option("--seed", arguments.seed, "As for render")->option_text("N");
+    rays->add_option("--device", options.device, "As for render")->option_text("NAME|INDEX");
+    rays->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    return rays;
+}
+
+void finish_rays(RaysOptions& options, const RaysArguments& arguments) {
+    if (arguments.size) options.size = parse_size(*arguments.size);
+    options.paths = uint32_t(parse_count(arguments.paths, "--paths", 1, 1 << 24));
+    options.backward = parse_choice<bool>(arguments.from, "--from", {{"lights", false}, {"receiver", true}});
+    options.events = names(arguments.events);
+    options.objects = names(arguments.objects);
+    options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
+    options.color = parse_color(arguments.color);
+    options.samples = parse_sampler(arguments.sampler);
+}
+
+}  // namespace etendue
