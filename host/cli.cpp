@@ -271,8 +271,9 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     bool known = first.starts_with("-");
     for (CLI::App* command : commands) known = known || first == command->get_name();
     if (!known)
-        fail_input("{}; one of: render, view, rays, compare, bench, inspect, classes, devices (see etendue --help)",
-                   argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
+        fail_input(
+            "{}; one of: render, view, rays, compare, bench, inspect, classes, devices (see etendue --help)",
+            argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
 
     CLI::App* chosen = &app;
     auto command_name = [&] {
