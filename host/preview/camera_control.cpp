@@ -84,4 +84,27 @@ CameraPose fly(const CameraPose& pose, double right, double up, double forward) 
 
 CameraPose focus(const CameraPose& pose, const glm::dvec3& point) { return {pose.placement, point}; }
 
+std::optional<std::array<glm::dvec2, 2>> seen_line(const CameraPose& pose, const CameraLens& lens,
+                                                   double aspect_ratio, const glm::dvec3& from,
+                                                   const glm::dvec3& to) {
+    const glm::dmat4 local_from_world = glm::inverse(pose.placement);
+    std::array<glm::dvec3, 2> ends = {glm::dvec3(local_from_world * glm::dvec4(from, 1)),
+                                      glm::dvec3(local_from_world * glm::dvec4(to, 1))};
+    // Cut where it comes near to the camera, which looks along -z.
+    const double nearest = lens.parallel ? 0 : 1e-3 * std::max(-ends[0].z, -ends[1].z);
+    if (!(std::max(-ends[0].z, -ends[1].z) > 0)) return {};
+    for (int i = 0; i < 2; ++i)
+        if (-ends[i].z < nearest) {
+            const glm::dvec3& other = ends[1 - i];
+            const double t = (nearest + ends[i].z) / (ends[i].z - other.z);
+            ends[i] += t * (other - ends[i]);
+        }
+    std::array<glm::dvec2, 2> seen;
+    for (int i = 0; i < 2; ++i) {
+        const glm::dvec2 at = glm::dvec2(ends[i]) / (lens.parallel ? lens.height : lens.height * -ends[i].z);
+        seen[i] = {0.5 * aspect_ratio + at.x, 0.5 - at.y};
+    }
+    return seen;
+}
+
 }  // namespace etendue

@@ -1,7 +1,9 @@
 // How mouse and keys move a camera: pure functions of where it stands. Lengths in metres, angles in radians,
 // the scene file's coordinates; +y is up.
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
+#include <optional>
 
 namespace etendue {
 
@@ -33,6 +35,12 @@ CameraPose dolly(const CameraPose& pose, const CameraLens& lens, double factor);
 CameraPose fly(const CameraPose& pose, double right, double up, double forward);
 // Turns around another point from now on; nothing moves.
 CameraPose focus(const CameraPose& pose, const glm::dvec3& point);
+
+// Where a line between two points is seen: in heights of the view from its top left corner, x to the right, y
+// down. None where all of it lies behind the camera.
+std::optional<std::array<glm::dvec2, 2>> seen_line(const CameraPose& pose, const CameraLens& lens,
+                                                   double aspect_ratio, const glm::dvec3& from,
+                                                   const glm::dvec3& to);
 
 double pivot_distance(const CameraPose& pose);  // along the axis; > 0
 

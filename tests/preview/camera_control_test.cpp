@@ -96,6 +96,26 @@ TEST_CASE("a dolly changes the distance, or the scale of parallel rays, and keep
           doctest::Approx(2 * (seen_at(pose, parallel, beside).x - seen_at(pose, parallel, pose.pivot).x)));
 }
 
+TEST_CASE("a line is seen where its ends are, and cut where it passes the camera") {
+    const CameraPose pose = some_pose();
+    const double aspect = 1.5;
+    const glm::dvec3 a = pose.pivot + glm::dvec3(0.3, 0.1, -0.2), b = pose.pivot - glm::dvec3(0.1, 0.4, 0.3);
+    for (const CameraLens& l : {lens, parallel}) {
+        const auto line = seen_line(pose, l, aspect, a, b);
+        REQUIRE(line);
+        const auto corner = [&](const glm::dvec2& p) { return glm::dvec2(0.5 * aspect + p.x, 0.5 - p.y); };
+        CHECK(near((*line)[0], corner(seen_at(pose, l, a))));
+        CHECK(near((*line)[1], corner(seen_at(pose, l, b))));
+        CHECK(!seen_line(pose, l, aspect, eye(pose) - forward(pose), eye(pose) - 2.0 * forward(pose)));
+    }
+    // From behind the camera, above it, to the pivot: what is seen of it comes in from above.
+    const auto cut =
+        seen_line(pose, lens, aspect, eye(pose) - forward(pose) + glm::dvec3(0, 1, 0), pose.pivot);
+    REQUIRE(cut);
+    CHECK((*cut)[0].y < -10);
+    CHECK(near((*cut)[1], glm::dvec2(0.5 * aspect, 0.5)));
+}
+
 TEST_CASE("flying goes by metres along the camera's axes") {
     const CameraPose pose = some_pose(), flown = fly(pose, 1, 2, 3);
     const glm::dvec3 local = glm::dvec3(glm::inverse(pose.placement) * glm::dvec4(eye(flown), 1));

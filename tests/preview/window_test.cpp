@@ -77,6 +77,19 @@ TEST_CASE("drags, the wheel and keys move the camera, and R brings it back") {
     CHECK(view.close().err == "");
 }
 
+TEST_CASE("P draws paths of light over the picture") {
+    ViewedScene view(two_balls, words_with("320x240"));
+    view.x.key("Tab");
+    const Image image = headless_image(two_balls, "320x240");
+    REQUIRE(shows(view.x, image, {}));
+    const Screenshot before = view.x.screenshot();
+    view.x.key("p");
+    CHECK(view.x.wait_until([&](const Screenshot& shot) { return changed_share(shot, before) > 0.01; }));
+    view.x.key("p");
+    CHECK(shows(view.x, image, {}));
+    CHECK(view.close().err == "");
+}
+
 TEST_CASE("the question mark lists the keys") {
     ViewedScene view(two_balls, words_with("800x600"));
     view.x.key("Tab");

@@ -35,6 +35,7 @@ const std::vector<Input::Shortcut>& Input::shortcuts() {
         {"+, -", "exposure, a third of a stop"},
         {"0", "exposure 0"},
         {"M", "meter the exposure"},
+        {"P", "paths of light on and off"},
         {"Space", "pause and go on"},
         {"C", "copy the camera as glTF"},
         {"Ctrl + S", "save EXR and PNG"},
@@ -111,6 +112,10 @@ void Input::on_key(int key, int action, int mods) {
             return;
         case GLFW_KEY_TAB:
             s.panels = !s.panels;
+            return;
+        case GLFW_KEY_P:
+            s.rays.on = !s.rays.on;
+            if (s.rays.on) trace_paths(s);
             return;
         case GLFW_KEY_SPACE:
             s.request.paused = !s.request.paused;

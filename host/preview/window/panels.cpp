@@ -75,11 +75,13 @@ void draw_panels(ViewState& state) {
         draw_film_panel(state);
         draw_camera_panel(state);
         draw_probe_panel(state);
+        draw_rays_panel(state);
         draw_objects_panel(state);
         ImGui::TextDisabled("? lists the keys, Tab hides the panels");
         ImGui::PopItemWidth();
         ImGui::End();
     }
+    if (state.rays.on) draw_rays(state);
     if (state.help) draw_help(state);
     if (state.picture && state.panels) {
         const ViewSettings shown = shown_settings(state);

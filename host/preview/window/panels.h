@@ -11,6 +11,8 @@ void draw_film_panel(ViewState& state);
 void draw_statistics_panel(ViewState& state);
 void draw_objects_panel(ViewState& state);
 void draw_probe_panel(ViewState& state);
+void draw_rays_panel(ViewState& state);
+void draw_rays(ViewState& state);  // the lines themselves
 void draw_help(ViewState& state);
 void draw_messages(ViewState& state);
 void draw_color_scale(ViewState& state, double lowest, double highest, const char* unit);

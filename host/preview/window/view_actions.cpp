@@ -15,6 +15,8 @@
 namespace etendue {
 namespace {
 
+constexpr uint32_t ray_passes = 16;  // that the ray viewer's paths are of
+
 // The first NAME-001.exr, … that is not there.
 std::filesystem::path free_name(const std::filesystem::path& scene) {
     for (int i = 1;; ++i) {
@@ -22,6 +24,22 @@ std::filesystem::path free_name(const std::filesystem::path& scene) {
         if (!std::filesystem::exists(path)) return path;
     }
 }
+
+// Says that a task has ended, with what it brings or with an error.
+class Done {
+  public:
+    Done(std::shared_ptr<TaskResults> results, bool TaskResults::*what)
+        : results_(std::move(results)), what_(what) {}
+    Done(const Done&) = delete;
+    ~Done() {
+        const std::lock_guard lock(results_->mutex);
+        (*results_).*what_ = true;
+    }
+
+  private:
+    std::shared_ptr<TaskResults> results_;
+    bool TaskResults::*what_;
+};
 
 }  // namespace
 
@@ -123,17 +141,42 @@ void edit_object(ViewState& state, const ObjectEdit& edit) {
     }
     state.edit_is_made = true;
     state.session.post([results = state.results, edit](PreviewScene& scene) {
-        struct Done {
-            TaskResults& results;
-            ~Done() {
-                const std::lock_guard lock(results.mutex);
-                results.edited = true;
-            }
-        } done{*results};
+        const Done done(results, &TaskResults::edited);
         if (edit.parameter.empty())
             scene.next = scene.live.set_class(edit.object, edit.value.get<std::string>());
         else
             scene.next = scene.live.set_parameter(edit.object, edit.parameter, edit.value);
+    });
+}
+
+void trace_paths(ViewState& state) {
+    RayView& rays = state.rays;
+    rays.wanted = rays.is_made;  // once more after those at work
+    if (rays.is_made) return;
+    rays.is_made = true;
+    state.session.post([results = state.results, forward = rays.forward, count = rays.count,
+                        filter = rays.filter](PreviewScene& scene) {
+        const Done done(results, &TaskResults::traced);
+        RenderSettings settings;
+        settings.width = scene.request.width, settings.height = scene.request.height;
+        settings.receiver = scene.receiver;
+        settings.seed = scene.request.seed;
+        PathRecorder recorder(scene.device, scene.scene, settings, forward);
+        // Spread over several passes, which have wavelengths of their own, and over all paths of a pass by
+        // steps of the golden ratio (Weyl's sequence).
+        std::vector<RecordedPath> paths;
+        for (uint32_t pass = 0; pass < ray_passes; ++pass) {
+            std::set<uint32_t> indices;
+            for (uint32_t i = pass; i < uint32_t(count); i += ray_passes)
+                indices.insert(uint32_t(uint64_t(i * 0x9E3779B9u) * recorder.paths_a_pass() >> 32));
+            if (indices.empty()) continue;
+            const std::vector<uint32_t> list(indices.begin(), indices.end());
+            const auto recorded = recorder.record(pass, list);
+            paths.insert(paths.end(), recorded.begin(), recorded.end());
+        }
+        std::erase_if(paths, [&](const RecordedPath& path) { return !filter.keeps(path); });
+        const std::lock_guard lock(results->mutex);
+        results->paths = std::move(paths);
     });
 }
 
@@ -160,6 +203,7 @@ void receive_news(ViewState& state) {
     state.status = state.session.status();
     state.picture = state.session.picture();
     if (state.status.scene != scene_before) {
+        if (state.rays.on) trace_paths(state);
         if (scene_before == 0 || state.request.receiver >= state.status.receivers.size())
             state.request.receiver = state.status.first_receiver;
         if (!state.moved) reset_camera(state);
@@ -177,7 +221,10 @@ void receive_news(ViewState& state) {
             state.reading_is_made = false;
         }
         if (std::exchange(state.results->edited, false)) state.edit_is_made = false;
+        if (std::exchange(state.results->traced, false)) state.rays.is_made = false;
+        if (state.results->paths) state.rays.paths = *std::exchange(state.results->paths, {});
     }
+    if (state.rays.wanted && !state.rays.is_made) trace_paths(state);
     if (state.edit && !state.edit_is_made) edit_object(state, *std::exchange(state.edit, {}));
     if (state.objects_from != state.status.objects && !state.edit && !state.edit_is_made) {
         state.objects_from = state.status.objects;

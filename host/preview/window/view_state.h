@@ -8,6 +8,7 @@
 #include "host/preview/pixel_probe.h"
 #include "host/preview/session.h"
 #include "host/preview/view_transform.h"
+#include "host/render/path_record.h"
 
 struct GLFWwindow;
 
@@ -19,7 +20,9 @@ struct TaskResults {
     std::optional<std::string> notice, clipboard;
     std::optional<glm::dvec3> focus;  // point to turn around
     std::optional<PixelReading> reading;
+    std::optional<std::vector<RecordedPath>> paths;
     bool edited = false;  // an edit has been made, or refused
+    bool traced = false;  // paths have been recorded, or not
 };
 
 // An edit of an object of the scene: of a parameter, or of its class.
@@ -27,6 +30,18 @@ struct ObjectEdit {
     LiveObject object;
     std::string parameter;  // empty = the class
     nlohmann::json value;
+};
+
+// The ray viewer.
+struct RayView {
+    bool on = false;
+    bool forward = true;
+    bool by_power = false;  // colours: else by wavelength, or by what the path carries
+    int count = 200;        // paths that are traced, of which the filter keeps some
+    PathFilter filter;
+    std::vector<RecordedPath> paths;
+    bool wanted = false;   // they are to be traced
+    bool is_made = false;  // they are being traced
 };
 
 struct ViewState {
@@ -58,6 +73,7 @@ struct ViewState {
     PreviewRequest reading_of;
     uint64_t reading_passes = 0;
     bool reading_is_made = false;
+    RayView rays;
     std::shared_ptr<TaskResults> results = std::make_shared<TaskResults>();
 };
 
@@ -75,6 +91,7 @@ void meter_exposure(ViewState& state);
 void focus_at_pointer(ViewState& state);
 void edit_object(ViewState& state, const ObjectEdit& edit);
 void read_pixel_at_pointer(ViewState& state);
+void trace_paths(ViewState& state);  // for the ray viewer
 void copy_camera(ViewState& state);  // to the clipboard, as glTF
 void save_image(ViewState& state);   // EXR and (sRGB, with the exposure) PNG, in the current folder
 // Takes over what the session and its tasks have brought since the last frame.

@@ -1,0 +1,98 @@
+// The ray viewer: recorded paths drawn over the picture, through bodies and all.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/preview/window/panels.h"
+
+namespace etendue {
+namespace {
+
+constexpr PathEvent events[] = {PathEvent::reflected, PathEvent::refracted, PathEvent::straight,
+                                PathEvent::scattered, PathEvent::absorbed,  PathEvent::escaped};
+constexpr double faintest = 0.05;  // of a line
+
+template <class T>
+bool checkbox(const char* label, std::set<T>& chosen, const T& value) {
+    bool on = chosen.count(value) > 0;
+    if (!ImGui::Checkbox(label, &on)) return false;
+    if (on)
+        chosen.insert(value);
+    else
+        chosen.erase(value);
+    return true;
+}
+
+// Everything that paths can meet by name.
+std::vector<std::string> object_names(const ViewState& state) {
+    std::set<std::string> names;
+    for (const LiveObject& object : state.objects)
+        if (!object.name.empty() && object.part != LiveObject::Part::receiver) names.insert(object.name);
+    return {names.begin(), names.end()};
+}
+
+ImU32 line_paint(const ViewState& state, const RecordedPath& path, const PathVertex& vertex) {
+    glm::vec3 color = line_color(path, vertex);
+    double strength = 0.6;
+    if (state.rays.by_power) {
+        const double start = path.vertices.front().leaving;
+        color = glm::vec3(1.0f, 0.9f, 0.3f);
+        strength = start > 0 ? std::clamp(vertex.leaving / start, faintest, 1.0) : faintest;
+    }
+    const auto encoded = [](float x) {
+        return int(std::lround(255 * std::pow(std::clamp(x, 0.0f, 1.0f), 1 / 2.2f)));
+    };
+    return IM_COL32(encoded(color.x), encoded(color.y), encoded(color.z), int(255 * strength));
+}
+
+}  // namespace
+
+void draw_rays(ViewState& state) {
+    const PreviewReceiver* receiver = shown_receiver(state);
+    if (!receiver || state.request.height == 0) return;
+    ImDrawList* list = ImGui::GetBackgroundDrawList();
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    const double aspect = double(window.x) / window.y;
+    for (const RecordedPath& path : state.rays.paths)
+        for (size_t i = 0; i + 1 < path.vertices.size(); ++i) {
+            const auto line = seen_line(state.pose, receiver->lens, aspect, path.vertices[i].position,
+                                        path.vertices[i + 1].position);
+            if (!line) continue;
+            const auto at = [&](int end) {
+                const glm::dvec2 p = glm::clamp((*line)[size_t(end)] * double(window.y), -1e5, 1e5);
+                return ImVec2(float(p.x), float(p.y));
+            };
+            list->AddLine(at(0), at(1), line_paint(state, path, path.vertices[i]), state.content_scale);
+        }
+}
+
+void draw_rays_panel(ViewState& state) {
+    if (!ImGui::CollapsingHeader("Rays")) return;
+    RayView& rays = state.rays;
+    bool changed = ImGui::Checkbox("show", &rays.on);
+    ImGui::SameLine();
+    ImGui::TextDisabled("%s", rays.is_made ? "tracing" : fmt::format("{} paths", rays.paths.size()).c_str());
+    int direction = rays.forward;
+    changed |= ImGui::RadioButton("from the receiver", &direction, 0);
+    ImGui::SameLine();
+    changed |= ImGui::RadioButton("from lights", &direction, 1);
+    rays.forward = direction != 0;
+    changed |= ImGui::SliderInt("paths", &rays.count, 1, 10000, "%d", ImGuiSliderFlags_Logarithmic);
+    ImGui::Checkbox("brightness by power", &rays.by_power);
+    if (ImGui::TreeNode("that were")) {
+        for (const PathEvent event : events)
+            changed |= checkbox(event_name(event), rays.filter.events, event);
+        ImGui::TreePop();
+    }
+    if (ImGui::TreeNode("at")) {
+        for (const std::string& name : object_names(state))
+            changed |= checkbox(name.c_str(), rays.filter.objects, name);
+        ImGui::TreePop();
+    }
+    if (ImGui::Button("Trace again")) changed = true;
+    if (changed && rays.on) trace_paths(state);
+}
+
+}  // namespace etendue
