@@ -103,7 +103,7 @@ void PreviewSession::loop() {
             at_work_ = wanted_;
             tasks.swap(tasks_);
         }
-        for (const auto& task : tasks) worker_.run_task(task);
+        for (auto& task : tasks) worker_.run_task(std::exchange(task, nullptr));
         if (std::chrono::steady_clock::now() >= next_watch) {
             worker_.reload_changed();
             next_watch = std::chrono::steady_clock::now() + watch_interval;

@@ -25,7 +25,7 @@ std::filesystem::path free_name(const std::filesystem::path& scene) {
     }
 }
 
-// Says that a task has ended, with what it brings or with an error.
+// Owned by a task: says that it has ended, with what it brings, with an error, or without having been run.
 class Done {
   public:
     Done(std::shared_ptr<TaskResults> results, bool TaskResults::*what)
@@ -40,6 +40,9 @@ class Done {
     std::shared_ptr<TaskResults> results_;
     bool TaskResults::*what_;
 };
+std::shared_ptr<Done> done_with(const ViewState& state, bool TaskResults::*what) {
+    return std::make_shared<Done>(state.results, what);
+}
 
 }  // namespace
 
@@ -140,8 +143,7 @@ void edit_object(ViewState& state, const ObjectEdit& edit) {
         return;
     }
     state.edit_is_made = true;
-    state.session.post([results = state.results, edit](PreviewScene& scene) {
-        const Done done(results, &TaskResults::edited);
+    state.session.post([done = done_with(state, &TaskResults::edited), edit](PreviewScene& scene) {
         if (edit.parameter.empty())
             scene.next = scene.live.set_class(edit.object, edit.value.get<std::string>());
         else
@@ -154,9 +156,9 @@ void trace_paths(ViewState& state) {
     rays.wanted = rays.is_made;  // once more after those at work
     if (rays.is_made) return;
     rays.is_made = true;
-    state.session.post([results = state.results, forward = rays.forward, count = rays.count,
+    state.session.post([results = state.results, done = done_with(state, &TaskResults::traced),
+                        forward = rays.forward, count = rays.count,
                         filter = rays.filter](PreviewScene& scene) {
-        const Done done(results, &TaskResults::traced);
         RenderSettings settings;
         settings.width = scene.request.width, settings.height = scene.request.height;
         settings.receiver = scene.receiver;
@@ -190,16 +192,53 @@ void read_pixel_at_pointer(ViewState& state) {
     state.reading_of = state.picture->request;
     state.reading_passes = state.status.passes;
     state.reading_is_made = true;
-    state.session.post([results = state.results, pixel](PreviewScene& scene) {
-        const PixelReading reading = read_pixel(scene, pixel);
-        const std::lock_guard lock(results->mutex);
-        results->reading = reading;
-    });
+    state.session.post(
+        [results = state.results, done = done_with(state, &TaskResults::read), pixel](PreviewScene& scene) {
+            const PixelReading reading = read_pixel(scene, pixel);
+            const std::lock_guard lock(results->mutex);
+            results->reading = reading;
+        });
 }
 
-void receive_news(ViewState& state) {
+namespace {
+
+// True: tasks have brought something.
+bool receive_results(ViewState& state) {
+    std::optional<std::string> notice, clipboard;
+    std::optional<glm::dvec3> point;
+    bool news = false;
+    {
+        const std::lock_guard lock(state.results->mutex);
+        TaskResults& results = *state.results;
+        news = results.notice || results.clipboard || results.focus || results.reading || results.paths ||
+               results.edited || results.traced || results.read;
+        notice = std::exchange(results.notice, {});
+        clipboard = std::exchange(results.clipboard, {});
+        point = std::exchange(results.focus, {});
+        if (results.reading) state.reading = std::exchange(results.reading, {});
+        if (results.paths) state.rays.paths = *std::exchange(results.paths, {});
+        if (std::exchange(results.read, false)) state.reading_is_made = false;
+        if (std::exchange(results.edited, false)) state.edit_is_made = false;
+        if (std::exchange(results.traced, false)) state.rays.is_made = false;
+    }
+    if (state.rays.wanted && !state.rays.is_made) trace_paths(state);
+    if (state.edit && !state.edit_is_made) edit_object(state, *std::exchange(state.edit, {}));
+    if (notice) note(state, *notice);
+    if (clipboard) glfwSetClipboardString(state.window, clipboard->c_str());
+    if (point) {
+        state.pose = focus(state.pose, *point);
+        note(state, "turning around the point that you chose");
+    }
+    return news;
+}
+
+}  // namespace
+
+bool receive_news(ViewState& state) {
     state.session.rethrow_failure();
-    const uint64_t scene_before = state.status.scene;
+    const uint64_t scene_before = state.status.scene, passes_before = state.status.passes;
+    const std::string message_before = state.status.message;
+    const auto picture_before = state.picture;
     state.status = state.session.status();
     state.picture = state.session.picture();
     if (state.status.scene != scene_before) {
@@ -209,33 +248,13 @@ void receive_news(ViewState& state) {
         if (!state.moved) reset_camera(state);
     }
     if (state.picture && !state.metered && state.picture->request == state.request) meter_exposure(state);
-    std::optional<std::string> notice, clipboard;
-    std::optional<glm::dvec3> point;
-    {
-        const std::lock_guard lock(state.results->mutex);
-        notice = std::exchange(state.results->notice, {});
-        clipboard = std::exchange(state.results->clipboard, {});
-        point = std::exchange(state.results->focus, {});
-        if (state.results->reading) {
-            state.reading = std::exchange(state.results->reading, {});
-            state.reading_is_made = false;
-        }
-        if (std::exchange(state.results->edited, false)) state.edit_is_made = false;
-        if (std::exchange(state.results->traced, false)) state.rays.is_made = false;
-        if (state.results->paths) state.rays.paths = *std::exchange(state.results->paths, {});
-    }
-    if (state.rays.wanted && !state.rays.is_made) trace_paths(state);
-    if (state.edit && !state.edit_is_made) edit_object(state, *std::exchange(state.edit, {}));
+    const bool results = receive_results(state);
     if (state.objects_from != state.status.objects && !state.edit && !state.edit_is_made) {
         state.objects_from = state.status.objects;
         if (state.objects_from) state.objects = *state.objects_from;
     }
-    if (notice) note(state, *notice);
-    if (clipboard) glfwSetClipboardString(state.window, clipboard->c_str());
-    if (point) {
-        state.pose = focus(state.pose, *point);
-        note(state, "turning around the point that you chose");
-    }
+    return results || state.picture != picture_before || state.status.scene != scene_before ||
+           state.status.passes != passes_before || state.status.message != message_before;
 }
 
 }  // namespace etendue

@@ -21,8 +21,8 @@ struct TaskResults {
     std::optional<glm::dvec3> focus;  // point to turn around
     std::optional<PixelReading> reading;
     std::optional<std::vector<RecordedPath>> paths;
-    bool edited = false;  // an edit has been made, or refused
-    bool traced = false;  // paths have been recorded, or not
+    // An edit, a reading, recorded paths: the task has ended, in whatever way.
+    bool edited = false, read = false, traced = false;
 };
 
 // An edit of an object of the scene: of a parameter, or of its class.
@@ -95,6 +95,7 @@ void trace_paths(ViewState& state);  // for the ray viewer
 void copy_camera(ViewState& state);  // to the clipboard, as glTF
 void save_image(ViewState& state);   // EXR and (sRGB, with the exposure) PNG, in the current folder
 // Takes over what the session and its tasks have brought since the last frame.
-void receive_news(ViewState& state);
+// True: there was any.
+bool receive_news(ViewState& state);
 
 }  // namespace etendue

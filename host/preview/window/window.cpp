@@ -150,18 +150,13 @@ int run_view(const ViewOptions& options, double started) {
         else
             glfwWaitEventsTimeout(idle_seconds);
         const double start = glfwGetTime();
-        const auto shown_before = state.picture;
-        const auto message_before = state.status.message;
-        const uint64_t passes_before = state.status.passes;
-        receive_news(state);
+        const bool news = receive_news(state);
         const bool flies = input.fly_on(start - last_frame);
         tell_session(state);
         if (state.request.width == 0) {
             frames_left = 0;
             continue;
         }
-        const bool news = state.picture != shown_before || state.status.passes != passes_before ||
-                          state.status.message != message_before;
         if (input.take_resize()) presenter.resized();
         if (input.take_events() || news || flies) frames_left = frames_after_events;
         // What stands for some time: messages end, movement comes to rest.
