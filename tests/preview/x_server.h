@@ -32,7 +32,7 @@ class XServer {
     void button(int number, bool down);
     Screenshot screenshot();
     // Until what the window shows is as wanted; false after so many seconds.
-    bool wait_until(const std::function<bool(const Screenshot&)>& is_right, double seconds = 30);
+    bool wait_until(const std::function<bool(const Screenshot&)>& is_right, double seconds = 60);
 
   private:
     void flush();
