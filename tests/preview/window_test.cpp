@@ -105,7 +105,7 @@ TEST_CASE("the question mark lists the keys") {
     CHECK(view.close().err == "");
 }
 
-TEST_CASE("without a display, without the module and with a bad scene there is one line") {
+TEST_CASE("without a display, a driver, the module or a good scene there is one line") {
     Executable program;
     write_text(program.folder / "scene.gltf", two_balls);
     program.environment["DISPLAY"] = ":9999";
@@ -126,6 +126,12 @@ TEST_CASE("without a display, without the module and with a bad scene there is o
 
     XServer x;
     program.environment["DISPLAY"] = x.name();
+    program.environment["VK_DRIVER_FILES"] = program.environment["VK_ICD_FILENAMES"] = "/dev/null";
+    run = program.run({"view", "scene.gltf"});
+    CHECK(run.code == 3);
+    CHECK(run.error_lines() == 1);
+    program.environment.erase("VK_DRIVER_FILES");
+    program.environment.erase("VK_ICD_FILENAMES");
     run = program.run({"view", "none.gltf"});
     CHECK(run.code == 2);
     CHECK(run.error_lines() == 1);
