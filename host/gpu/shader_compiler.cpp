@@ -78,17 +78,29 @@ bool read_spirv(const std::filesystem::path& path, Spirv& spirv) {
 
 // Written beside its place and renamed, so that a reader never sees half a file. A full disk only costs the
 // cache.
-void write_spirv(const std::filesystem::path& path, const Spirv& spirv) {
+void write_cached(const std::filesystem::path& path, const void* data, size_t bytes) {
     std::filesystem::path temporary = path;
     temporary += fmt::format(".{}", ::getpid());
     std::ofstream file(temporary, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(spirv.data()), std::streamsize(spirv.size() * 4));
+    file.write(static_cast<const char*>(data), std::streamsize(bytes));
     file.close();
     std::error_code error;
     if (file)
         std::filesystem::rename(temporary, path, error);
     else
         std::filesystem::remove(temporary, error);
+}
+
+// Of the same kernel by its preprocessed source.
+std::filesystem::path cached_spirv(const CompileOptions& options, const std::string& kernel, uint64_t hash) {
+    return options.cache_folder / fmt::format("{}-{:016x}.spv", kernel, hash);
+}
+
+// The hash of the preprocessed source of text that was compiled before: preprocessing it again takes glslang
+// longer than all else of a start.
+bool read_hash(const std::filesystem::path& path, uint64_t& hash) {
+    std::ifstream file(path, std::ios::binary);
+    return bool(file.read(reinterpret_cast<char*>(&hash), sizeof hash));
 }
 
 void optimize(Spirv& spirv) {
@@ -110,11 +122,24 @@ struct GlslangProcess {
 
 CompiledShader compile_shader(const ShaderSources& sources, const std::string& name,
                               const CompileOptions& options) {
-    static GlslangProcess process;
     const auto start = std::chrono::steady_clock::now();
     CompiledShader result;
     result.name = std::filesystem::path(name).stem().string();
+    const uint64_t version = hash_text(ETENDUE_VERSION, options.optimize ? 1 : 2);
 
+    std::filesystem::path known;  // holds the hash of the preprocessed source
+    if (const auto whole = options.cache_folder.empty() ? std::nullopt : sources.whole_hash()) {
+        const uint64_t key =
+            hash_text(name, hash_text(options.defines, hash_text(prelude, version ^ *whole)));
+        known = options.cache_folder / fmt::format("{}-{:016x}.key", result.name, key);
+        uint64_t hash = 0;
+        if (read_hash(known, hash) && read_spirv(cached_spirv(options, result.name, hash), result.spirv)) {
+            result.from_cache = true;
+            return result;
+        }
+    }
+
+    static GlslangProcess process;
     const std::string text = prelude + options.defines + "#line 1\n" + sources.get(name);
     const char* text_pointer = text.c_str();
     const int text_length = int(text.size());
@@ -137,8 +162,9 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
         Includer includer(sources);
         if (!shader.preprocess(limits, 460, ECoreProfile, false, false, messages, &preprocessed, includer))
             fail_input("{}", first_error(shader.getInfoLog()));
-        const uint64_t hash = hash_text(preprocessed, hash_text(ETENDUE_VERSION, options.optimize ? 1 : 2));
-        cached = options.cache_folder / fmt::format("{}-{:016x}.spv", result.name, hash);
+        const uint64_t hash = hash_text(preprocessed, version);
+        cached = cached_spirv(options, result.name, hash);
+        if (!known.empty()) write_cached(known, &hash, sizeof hash);
         if (read_spirv(cached, result.spirv)) {
             result.from_cache = true;
             return result;
@@ -158,7 +184,7 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
     glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), result.spirv, &spv_options);
     if (options.optimize) optimize(result.spirv);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (!cached.empty()) write_spirv(cached, result.spirv);
+    if (!cached.empty()) write_cached(cached, result.spirv.data(), result.spirv.size() * 4);
     return result;
 }
 

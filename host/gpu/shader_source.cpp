@@ -46,6 +46,17 @@ uint64_t ShaderSources::hash() const {
     return hash;
 }
 
+std::optional<uint64_t> ShaderSources::whole_hash() const {
+    static const uint64_t embedded = [] {
+        uint64_t hash = hash_text("");
+        for (const EmbeddedFile& file : embedded_shaders())
+            hash = hash_text(file.text, hash_text(file.name, hash));
+        return hash;
+    }();
+    if (!folder.empty() && !kept) return std::nullopt;
+    return hash() ^ embedded;
+}
+
 std::optional<std::string> ShaderSources::find(const std::string& name) const {
     if (auto found = generated.find(name); found != generated.end()) return found->second;
     if (kept) {

@@ -23,6 +23,8 @@ struct ShaderSources {
     std::string get(const std::string& name) const;  // fails with a clear line where there is none
     // Of all text that stands before the embedded copy; the folder must be kept.
     uint64_t hash() const;
+    // The same with the embedded copy; nothing where there is a folder that is not kept.
+    std::optional<uint64_t> whole_hash() const;
 
     struct KeptFolder {
         std::map<std::string, std::string> files;
