@@ -29,6 +29,29 @@ std::string complaint(std::vector<const char*> words) {
 
 }  // namespace
 
+TEST_CASE("a view without options refines for ever, from a metered exposure; with them it is as they say") {
+    auto options = std::get<ViewOptions>(parse({"view", "models/box.glb"}));
+    CHECK(options.scene == "models/box.glb");
+    CHECK(!options.passes);
+    CHECK(!options.exposure);
+    CHECK(!options.size);
+    CHECK(options.curve == ToneCurve::srgb);
+    options =
+        std::get<ViewOptions>(parse({"view", "a.gltf", "--exposure", "-2.5", "--tone-curve", "agx",
+                                     "--passes", "7", "--size", "640x480", "--algorithm", "bidirectional"}));
+    CHECK(options.exposure == -2.5);
+    CHECK(options.curve == ToneCurve::agx);
+    CHECK(options.passes == 7);
+    CHECK(options.size->width == 640);
+    CHECK(options.algorithm == Algorithm::bidirectional);
+    for (const char* bad : {"", "-", "x", "1e9", "nan", "1 2"}) {
+        CAPTURE(bad);
+        CHECK(complaint({"view", "a.gltf", "--exposure", bad}).starts_with("--exposure"));
+    }
+    CHECK(complaint({"view", "a.gltf", "--tone-curve", "film"}).find("agx") != std::string::npos);
+    CHECK(complaint({"view", "a.gltf", "--output", "a.exr"}).find("--output") != std::string::npos);
+}
+
 TEST_CASE("a render without options runs 64 passes into the scene's name in the current folder") {
     auto options = std::get<RenderOptions>(parse({"render", "models/box.glb"}));
     CHECK(options.scene == "models/box.glb");

@@ -132,6 +132,7 @@ int run_view(const ViewOptions& options, double started) {
     state.request.algorithm = options.algorithm;
     state.request.seed = uint32_t(options.seed ^ (options.seed >> 32));
     glfwGetWindowContentScale(state.window, &state.content_scale, nullptr);
+    const float first_scale = state.content_scale;
     tell_session(state);
     Input input(state);
     const Panels panels(state.window, state.content_scale);
@@ -165,6 +166,7 @@ int run_view(const ViewOptions& options, double started) {
         if (frames_left == 0 || start < next) continue;
         --frames_left;
 
+        ImGui::GetIO().FontGlobalScale = state.content_scale / first_scale;  // moved to another display
         ImGui_ImplVulkan_NewFrame();
         ImGui_ImplGlfw_NewFrame();
         ImGui::NewFrame();
