@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 
 #include "host/error.h"
 #include "host/scene/gltf.h"
@@ -20,9 +21,11 @@ SceneOptions scene_options(const SceneChoice& choice) {
 }
 
 OpenedScene open_scene(const SceneChoice& choice) {
+    // Beside each other; what is wrong with the scene is told before what is wrong with the device.
+    auto device = std::async(std::launch::async, [&] { return create_device({choice.device, false}); });
     const SceneDescription description = import_gltf(choice.scene);
     OpenedScene opened;
-    opened.device = create_device({choice.device, false});
+    opened.device = device.get();
     opened.scene = compile_scene(*opened.device, description, scene_options(choice));
     return opened;
 }

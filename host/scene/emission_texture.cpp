@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 namespace etendue {
 namespace {
@@ -48,14 +49,11 @@ EmissionTexture::EmissionTexture(const ImageDescription& image, const TextureUse
     : use_(use),
       width_(int(image.width)),
       height_(int(image.height)),
-      luminance_(size_t(image.width) * image.height) {
-    for (size_t i = 0; i < luminance_.size(); ++i)
-        luminance_[i] = glm::dot(linear_texel(image, i), glm::vec3(0.2126f, 0.7152f, 0.0722f));
-}
-
-float EmissionTexture::texel(int x, int y) const {
-    return luminance_[size_t(wrap_texel(y, height_, use_.wrap_v)) * width_ +
-                      wrap_texel(x, width_, use_.wrap_u)];
+      lit_(size_t(image.width) * image.height) {
+    const auto& bytes = image.rgba8;
+    for (size_t i = 0; i < lit_.size(); ++i)
+        lit_[i] = bytes.empty() ? glm::dot(linear_texel(image, i), glm::vec3(0.2126f, 0.7152f, 0.0722f)) > 0
+                                : (bytes[4 * i] | bytes[4 * i + 1] | bytes[4 * i + 2]) > 0;
 }
 
 bool EmissionTexture::is_dark(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const {
@@ -70,9 +68,16 @@ bool EmissionTexture::is_dark(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) co
         hi = glm::max(hi, corner * glm::dvec2(width_, height_));
     }
     if (!((hi.x - lo.x + 4) * (hi.y - lo.y + 4) < max_texels) || !(glm::length(lo) < 1e6)) return false;
-    for (int y = int(std::floor(lo.y - 1)); y <= int(std::ceil(hi.y)); ++y)
-        for (int x = int(std::floor(lo.x - 1)); x <= int(std::ceil(hi.x)); ++x)
-            if (texel(x, y) > 0) return false;
+    const int first = int(std::floor(lo.x - 1)), end = int(std::ceil(hi.x)) + 1;
+    for (int y = int(std::floor(lo.y - 1)); y <= int(std::ceil(hi.y)); ++y) {
+        const uint8_t* row = &lit_[size_t(wrap_texel(y, height_, use_.wrap_v)) * width_];
+        if (first >= 0 && end <= width_) {
+            if (std::memchr(row + first, 1, size_t(end - first))) return false;
+            continue;
+        }
+        for (int x = first; x < end; ++x)
+            if (row[wrap_texel(x, width_, use_.wrap_u)]) return false;
+    }
     return true;
 }
 

@@ -1,5 +1,6 @@
 // How bright an emissive texture is over parts of a surface: so that triangles it leaves dark are no lights.
 #pragma once
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -19,10 +20,9 @@ class EmissionTexture {
     bool is_dark(const glm::vec2 uv0[3], const glm::vec2 uv1[3]) const;
 
   private:
-    float texel(int x, int y) const;  // any x and y: wrapped as the texture says
     TextureUse use_;
     int width_, height_;
-    std::vector<float> luminance_;
+    std::vector<uint8_t> lit_;  // 1 where a texel is not black
 };
 
 }  // namespace etendue
