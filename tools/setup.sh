@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 packages=(
     cmake ninja-build g++ pkg-config clang-format
     libvulkan-dev vulkan-validationlayers libvulkan1
-    glslang-dev spirv-tools spirv-headers libglm-dev libtinygltf-dev libopenexr-dev libfmt-dev
+    glslang-dev glslang-tools spirv-tools spirv-headers libglm-dev libtinygltf-dev libopenexr-dev libfmt-dev
     libcli11-dev nlohmann-json3-dev doctest-dev libstb-dev gnuplot-nox
     libglfw3-dev libimgui-dev # the window
     xvfb libxtst-dev # tests of the window
