@@ -43,7 +43,9 @@
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)              \
     X(1, Homogeneous, homogeneous)     \
-    X(2, Grid, grid)
+    X(2, Grid, grid)                   \
+    X(3, GradientIndex, gradient_index) \
+    X(4, FishEye, fish_eye)
 
 // folder phases/, contract interfaces/phase_function.glsl
 #define PHASE_CLASSES(X)               \

@@ -54,6 +54,8 @@ int inspect_command(const InspectOptions& options) {
     feature(f.media, "media", "a medium absorbs or scatters", "no medium absorbs");
     feature(f.scattering, "scattering", "a medium scatters: paths have vertices between surfaces",
             "no medium scatters");
+    feature(f.bending, "bent rays", "the refractive index of a medium varies in space",
+            "every medium has one refractive index");
     feature(f.straight, "straight passage",
             "a surface class lets light pass unscattered: shadow rays go through",
             "shadow rays end at the first surface");

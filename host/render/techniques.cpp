@@ -50,7 +50,8 @@ bool find_narrow_materials(Device& device, Scene& scene) {
     for (size_t i = 0; i < narrow.size(); ++i)
         if (narrow[i]) materials[i].flags |= MaterialFlag::narrow;
     buffer.write(materials.data(), materials.size() * sizeof(MaterialRecord));
-    scene.has_narrow_materials = std::find(narrow.begin(), narrow.end(), 1u) != narrow.end();
+    scene.has_narrow_materials =
+        scene.features.bending || std::find(narrow.begin(), narrow.end(), 1u) != narrow.end();
     return *scene.has_narrow_materials;
 }
 

@@ -17,7 +17,7 @@ struct Techniques {
 };
 
 // Marks the materials that scatter into narrow lobes (asked of the classes on the device, once a scene);
-// returns whether there are any.
+// returns whether there are any, or media that bend rays, which are like them.
 bool find_narrow_materials(Device& device, Scene& scene);
 
 // Whether a light is seen under a small solid angle for its share of the power (asked of the classes on the

@@ -28,6 +28,7 @@ uint64_t path_bytes(Wavefront::Direction direction, const Techniques& t, const S
     if (t.merge && !forward) bytes += spectrum_bytes(scene);                          // bias
     if (scene.features.scattering) bytes += 4;                                        // passage
     if (scene.features.body_count > 0) bytes += 12;                                   // bodies
+    if (scene.features.bending) bytes += 56;                                          // bend
     return bytes;
 }
 

@@ -9,7 +9,7 @@ namespace etendue {
 Features Features::everything() {
     Features f;
     f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.textures = true;
-    f.media = f.scattering = f.interfaces = f.straight = f.light_tree = true;
+    f.media = f.scattering = f.bending = f.interfaces = f.straight = f.light_tree = true;
     f.body_count = most_bodies;
     f.light_count = 16;
     f.infinite_light_count = 2;
@@ -31,6 +31,7 @@ std::string Features::defines() const {
     define("HAS_TEXTURES", textures);
     define("HAS_MEDIA", media);
     define("HAS_SCATTERING", scattering);
+    define("HAS_BENDING", bending);
     define("HAS_INTERFACES", interfaces);
     define("HAS_PRIORITIES", body_count > 0);
     if (body_count > 0) define("BODY_COUNT", body_count);

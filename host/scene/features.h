@@ -18,6 +18,7 @@ struct Features {
     bool textures = false;
     bool media = false;           // some medium absorbs or scatters
     bool scattering = false;      // some medium scatters
+    bool bending = false;         // some medium bends rays
     bool interfaces = false;      // some surface separates media: paths keep track of where they are
     uint32_t body_count = 0;      // materials with a priority: paths count the bodies that they are inside
     bool straight = false;        // some surface lets light pass straight on: shadow rays go through

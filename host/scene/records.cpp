@@ -29,6 +29,13 @@ float checked_number(const json& value, const Parameter& p, const std::string& p
     return float(number);
 }
 
+glm::dvec3 checked_vector(const json& value, const Parameter& p, const std::string& place) {
+    if (!value.is_array() || value.size() != 3)
+        fail_input("{}: allowed: an array of 3 numbers{}", place, allowed(p));
+    for (size_t i = 0; i < 3; ++i) checked_number(value[i], p, fmt::format("{}/{}", place, i));
+    return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
 int vector_length(const std::string& type) {
     return type == "vec2" ? 2 : type == "vec3" ? 3 : type == "vec4" ? 4 : 0;
 }
@@ -52,6 +59,14 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
             fail_input("{}: allowed: an array of {} numbers{}", place, length, allowed(p));
         for (int i = 0; i < length; ++i)
             store(record, at + 4 * i, checked_number(value[i], p, fmt::format("{}/{}", place, i)));
+    } else if (type == "WorldPoint" || type == "Direction") {
+        const glm::dvec3 v = checked_vector(value, p, place);
+        if (type == "WorldPoint") {
+            store(record, at, resolver.world_point(v));
+        } else {
+            if (!(glm::length(v) > 0)) fail_input("{}: has no length; allowed: a direction", place);
+            store(record, at, glm::vec3(glm::normalize(v)));
+        }
     } else if (type == "uint" || type == "int") {
         // A bool of GLSL is a uint in a buffer; its default tells them apart.
         if (p.default_value.is_boolean()) {

@@ -35,6 +35,10 @@ struct RecordResolver {
     // Index of a density in space that is given by a file.
     std::function<uint32_t(const nlohmann::json& value, const std::string& where)> grid =
         [](const nlohmann::json&, const std::string&) { return 0u; };
+    // A point in the device's world.
+    std::function<glm::vec3(const glm::dvec3& point)> world_point = [](const glm::dvec3& p) {
+        return glm::vec3(p);
+    };
     std::function<MeasuredRef(const std::filesystem::path& file)> measured =
         [](const std::filesystem::path&) { return MeasuredRef{}; };
     // RecordRef of the phase function that stands at that place of the scene.

@@ -32,6 +32,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     resolver_.grid = [this](const nlohmann::json& value, const std::string& where) {
         return add_grid(value, where);
     };
+    resolver_.world_point = [this](const glm::dvec3& point) { return glm::vec3(point - out_.center); };
     resolver_.measured = [this](const std::filesystem::path& file) { return add_measured(file); };
 }
 
@@ -46,9 +47,9 @@ Scene SceneCompiler::run() {
     for (const PlacedObject& element : in_.elements)
         fail_input("{}: optical elements are not available in this version",
                    message_place(in_, element.object.where));
+    add_geometry();
     add_media();
     add_materials();
-    add_geometry();
     upload_grids();
     if (memory_.world.bounds.empty() && !in_.environment && options_.environment.empty())
         fail_input("{}: the scene is empty: it has neither geometry nor an environment", in_.file.string());
@@ -137,8 +138,9 @@ void SceneCompiler::add_media() {
     run_once("kernels/measure_media.comp", uint32_t(refs.size()),
              {{"MediumRefs", &in}, {"MediumEffects", &out}}, {{"count", uint32_t(refs.size())}});
     for (uint32_t effect : out.read_array<uint32_t>(refs.size())) {
-        out_.features.media |= effect > 0;
-        out_.features.scattering |= effect == 2;
+        out_.features.media |= (effect & 3) != 0;
+        out_.features.scattering |= (effect & 2) != 0;
+        out_.features.bending |= (effect & 4) != 0;
     }
     if (!out_.features.scattering) out_.classes.erase(Interface::phase);
 }

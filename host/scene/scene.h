@@ -63,7 +63,7 @@ struct Scene {
     // colours.
     std::vector<SpectralTable> spectra;
     bool reads_color_spectra = false;  // some kernel does, so that they must be there (host/spectra/color.h)
-    std::optional<bool> has_narrow_materials;  // once asked: are any marked MaterialFlag::narrow?
+    std::optional<bool> has_narrow_materials;  // once asked (find_narrow_materials)
     double bvh_seconds = 0, bvh_cost = 0;
     uint32_t bvh_depth = 0;
     std::filesystem::path cache_folder;

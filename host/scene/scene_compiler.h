@@ -54,7 +54,7 @@ class SceneCompiler {
     // scene_grids.cpp
     EnvironmentMapRef add_environment_map(const std::filesystem::path& file);
     uint32_t add_grid(const nlohmann::json& value, const std::string& where);
-    void upload_grids();  // once the centre of the world is known
+    void upload_grids();
 
     // scene_spectra.cpp
     uint32_t add_spectrum(const SpectralValue& value, SpectralKind kind);
@@ -66,6 +66,7 @@ class SceneCompiler {
     void add_materials();
     std::vector<bool> used_materials() const;
     void fill_emission(const EmissionDescription& emission, MaterialRecord& record);
+    bool has_bodies() const;  // materials with a priority
     void rank_bodies();
     void ask_opacity();
     uint32_t medium_ref(const std::string& name, const std::string& where);
@@ -76,7 +77,7 @@ class SceneCompiler {
     void upload_measured();
 
     // scene_geometry.cpp
-    void add_geometry();
+    void add_geometry();  // and where its centre is, from which positions are measured
     uint64_t world_key(const std::vector<Box>& shape_bounds) const;
     std::vector<Box> shape_bounds(const std::vector<uint32_t>& refs);
     void upload_world();

@@ -30,7 +30,7 @@ void SceneCompiler::add_geometry() {
         memory_.light_positions.clear();
         world = build_world(in_, bounds, refs, threads_, memory_.world_features);
         memory_.unrolled_traversal.clear();
-        if (out_.features.body_count == 0) memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
+        if (!has_bodies()) memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
         memory_.world_key = key;
     }
     out_.features.triangles = memory_.world_features.triangles;
@@ -48,7 +48,7 @@ void SceneCompiler::add_geometry() {
 
 // Of all that the world depends on but the meshes themselves.
 uint64_t SceneCompiler::world_key(const std::vector<Box>& shape_bounds) const {
-    uint64_t key = hash_text(out_.features.body_count == 0 ? "" : "bodies");
+    uint64_t key = hash_text(has_bodies() ? "bodies" : "");
     const auto add = [&](const auto& value) {
         key = hash_text({reinterpret_cast<const char*>(&value), sizeof value}, key);
     };

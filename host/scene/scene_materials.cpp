@@ -80,6 +80,13 @@ void SceneCompiler::upload_measured() {
     share("MeasuredColors", memory_.measured.colors);
 }
 
+bool SceneCompiler::has_bodies() const {
+    const std::vector<bool> used = used_materials();
+    for (size_t i = 0; i < used.size(); ++i)
+        if (used[i] && in_.materials[i].priority > 0) return true;
+    return false;
+}
+
 // Materials with a priority by their place in the order of priorities; the first of several of the same.
 void SceneCompiler::rank_bodies() {
     const std::vector<bool> used = used_materials();

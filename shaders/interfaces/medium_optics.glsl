@@ -1,6 +1,6 @@
 // MediumOptics: what happens between surfaces. A class NAME defines, for its record R:
 //
-//   Spectrum NAME_ior(R r)                          real refractive index
+//   Spectrum NAME_ior(R r, vec3 position)           real refractive index
 //   Passage  NAME_pass(R r, MediumRay ray, uint seed)   part that is left at the end of the ray, neither absorbed nor scattered
 //   bool     NAME_is_clear(R r)                     all of it is left, whatever the distance
 //   bool     NAME_scatters(R r)                     some of it is scattered. Only then are asked:
@@ -9,6 +9,9 @@
 //   float    NAME_mean_extinction(R r, vec3 position)   extinction coefficient of an average lane, 1/m
 //   Spectrum NAME_scattering(R r, vec3 position)    scattering coefficient, 1/m
 //   uint     NAME_phase(R r)                        RecordRef of the phase function
+//   bool     NAME_bends(R r)                        the index varies in space: rays are bent. It does not scatter. Only then are asked:
+//   vec3     NAME_bending(R r, vec3 position)       half the gradient of the squared index of the hero wavelength, 1/m
+//   StepLimits NAME_step_limits(R r)                how long steps may be (lib/bent_step.glsl)
 //
 // Rays and positions are in world space. `seed`: for classes that need any number of random numbers; right in the mean over
 // all seeds. Passage.mean, FreePath.passage and the mean extinction serve to weigh ways to make a path against each other
@@ -17,6 +20,7 @@
 #include "lib/constants.glsl"
 #include "lib/spectrum.glsl"
 #include "lib/records.glsl"
+#include "lib/bent_step.glsl"
 #include "lib/free_path.glsl"
 #if HAS_SCATTERING
 #include "interfaces/phase_function.glsl"
@@ -24,10 +28,10 @@
 
 #include "generated/medium_classes.glsl"
 
-Spectrum medium_spectral_ior(uint ref) {
+Spectrum medium_spectral_ior(uint ref, vec3 position) {
     Spectrum result = Spectrum(1);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_ior(name##_record(record_index(ref))); break;
+#define CASE(tag, Struct, name) case tag: result = name##_ior(name##_record(record_index(ref)), position); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }
@@ -35,7 +39,7 @@ Spectrum medium_spectral_ior(uint ref) {
 }
 
 // Of the hero wavelength; colours have one index.
-float medium_ior(uint ref) { return medium_spectral_ior(ref).x; }
+float medium_ior(uint ref, vec3 position) { return medium_spectral_ior(ref, position).x; }
 
 Passage medium_pass(uint ref, MediumRay ray, uint seed) {
     Passage result = Passage(Spectrum(1), 1.0);
@@ -61,6 +65,16 @@ bool medium_scatters(uint ref) {
     bool result = false;
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_scatters(name##_record(record_index(ref))); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+bool medium_bends(uint ref) {
+    bool result = false;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_bends(name##_record(record_index(ref))); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }
@@ -102,6 +116,28 @@ uint medium_phase(uint ref) {
     uint result = NO_RECORD;
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_phase(name##_record(record_index(ref))); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+#endif
+
+#if HAS_BENDING
+vec3 medium_bending(uint ref, vec3 position) {
+    vec3 result = vec3(0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_bending(name##_record(record_index(ref)), position); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+StepLimits medium_step_limits(uint ref) {
+    StepLimits result = StepLimits(INFINITY, INFINITY);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_step_limits(name##_record(record_index(ref))); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }

@@ -22,7 +22,7 @@ void main() {
     SurfaceContext c = SurfaceContext(vec2(0), vec2(0), vec4(1), 1.0, 1.0, false);
     // What is around a body with a priority may have its index, even if the surface of most of it is opaque.
     if ((m.flags & MATERIAL_SEPARATES_MEDIA) != 0u && m.body == NO_RECORD)
-        c.ior_above = medium_ior(m.outside), c.ior_below = medium_ior(m.inside);
+        c.ior_above = medium_ior(m.outside, vec3(0)), c.ior_below = medium_ior(m.inside, vec3(0));
     uint answer = surface_is_opaque(m.surface, c) ? 1u : 0u;
 #if HAS_PRIORITIES
     bool passes = m.surface == NO_RECORD;

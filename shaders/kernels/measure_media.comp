@@ -1,4 +1,4 @@
-// What a medium does to light, one lane a medium: nothing, or it absorbs, or it scatters. The classes know.
+// What a medium does to light, one lane a medium: it absorbs or scatters (1), scatters (2), bends it (4). The classes know.
 // Reads: media. Writes: one word a medium. Barrier expected: after the dispatch.
 #include "interfaces/medium_optics.glsl"
 
@@ -9,5 +9,7 @@ layout(push_constant) uniform Push { uint first, count; };
 
 void main() {
     uint i = first + gl_GlobalInvocationID.x;
-    if (i < count) medium_effects[i] = medium_scatters(medium_refs[i]) ? 2u : medium_is_clear(medium_refs[i]) ? 0u : 1u;
+    if (i >= count) return;
+    uint ref = medium_refs[i];
+    medium_effects[i] = (medium_is_clear(ref) ? 0u : 1u) | (medium_scatters(ref) ? 2u : 0u) | (medium_bends(ref) ? 4u : 0u);
 }

@@ -25,7 +25,8 @@ void main() {
         }
         if (alive) {
             counters.rays++;
-            Hit hit = find_hit(path.origin, path.direction, INFINITY);
+            float end = begin_ray(path);
+            Hit hit = find_hit(path.origin, path.direction, end);
             ShadowRay shadow;
             alive = scatter_forward_path(path, hit, index, counters, shadow);
             Spectrum brought = trace_shadow(shadow, counters);

@@ -37,7 +37,8 @@ void main() {
                                    first_sample + sample_index, seed);
         }
         counters.rays++;
-        Hit hit = find_hit(path.origin, path.direction, INFINITY);
+        float end = begin_ray(path);
+        Hit hit = find_hit(path.origin, path.direction, end);
         ShadowRay shadow;
 #if CONNECT_VERTICES
         ShadowRay vertex_shadow;

@@ -1,4 +1,5 @@
 // What befalls a path at a surface or within a medium, whichever way it goes.
+#include "lib/bending.glsl"
 #include "lib/mis.glsl"
 
 // The end of a ray towards a sampled point of a light lies short of the light by the rounding error of both points, so
@@ -40,6 +41,9 @@ ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float di
     shadow.medium = medium_among(shadow.bodies);
 #else
     shadow.medium = scattering_medium(s, direction);
+#endif
+#if HAS_BENDING
+    if (medium_bends(shadow.medium)) shadow.t_max = 0.0;
 #endif
     weigh(shadow, others);
     return shadow;
@@ -121,7 +125,7 @@ bool survive_roulette(inout Path path, bool passes) {
     if (path.depth < 3u) return true;
     float carried = max_component(path.throughput);
 #if HAS_INTERFACES && !FORWARD
-    float ior = medium_ior(path.medium);
+    float ior = medium_ior(path.medium, path.origin);
     carried *= ior * ior;
 #endif
     float q = min(carried, path.depth < 64u || passes ? 1.0 : 0.95);

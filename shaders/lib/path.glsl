@@ -6,6 +6,7 @@
 //   CONNECT_VERTICES  … also by connecting vertices of backward paths with vertices of forward paths
 //   MERGE_VERTICES    … also by merging them
 //   FORWARD_ONLY      what forward rays can bring is brought by nothing else
+#include "lib/bent_step.glsl"
 #include "lib/bodies.glsl"
 #include "lib/records.glsl"
 #include "lib/sampler.glsl"
@@ -16,9 +17,18 @@
 #endif
 #define HAS_PATH_FLAGS (BIDIRECTIONAL || FORWARD_ONLY || HAS_DISPERSION)
 
+#if HAS_BENDING
+// Where the next ray is a step of a bent one (lib/bending.glsl).
+struct Bend {
+    float chord;   // m, its length; INFINITY = the ray goes straight. Between rays: what the next step is limited by
+    BentStep step;
+    uint steps;    // of the path so far
+};
+#endif
+
 struct Path {
     vec3 origin;          // of the ray to trace next
-    vec3 direction;       // unit
+    vec3 direction;       // unit; of a bent ray that of the chord
     Spectrum throughput;  // backward: what a unit of radiance along the ray contributes to the pixel; forward: flux that the ray
                           // carries, in units of the mean of all forward paths
     Spectrum radiance;    // collected so far
@@ -30,6 +40,9 @@ struct Path {
 #endif
 #if HAS_SCATTERING
     float passage;        // of scattering media since the reference (interfaces/medium_optics.glsl)
+#endif
+#if HAS_BENDING
+    Bend bend;
 #endif
     uint depth;           // events so far
     Sampler random;
@@ -122,6 +135,9 @@ void weigh(inout ShadowRay ray, float others) {
 // A path of more events than this is cut, and what it carried is reported as lost: only a closed scene that absorbs
 // nothing gets there (Russian roulette lets a path live for 65536 events with probability 1e-1400).
 const uint MAX_DEPTH = 65536u;
+
+// Of a bent path: the same is done with it then.
+const uint MAX_STEPS = 65536u;
 
 struct Counters {
     uint rays;                // segments traced

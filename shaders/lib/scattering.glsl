@@ -92,7 +92,7 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool i
     s.extinction = 0.0;
 #endif
 #if HAS_INTERFACES
-    Spectrum above = medium_spectral_ior(s.medium_above), below = medium_spectral_ior(s.medium_below);
+    Spectrum above = medium_spectral_ior(s.medium_above, p.position), below = medium_spectral_ior(s.medium_below, p.position);
     s.context.ior_above = above.x;
     s.context.ior_below = below.x;
 #if HAS_DISPERSION

@@ -5,6 +5,7 @@
 // within the tile. Ray state is split by who reads it: find_hits needs the first two arrays only. What the techniques of
 // lib/path.glsl do not need takes no room; the host sizes the arrays in host/render/wavefront.cpp.
 #include "lib/constants.glsl"
+#include "lib/bending.glsl"
 #include "lib/path.glsl"
 #if FORWARD
 #include "lib/forward_pass.glsl"
@@ -19,6 +20,9 @@ struct PathState {
     vec3 reference;
     uint medium;
     uint dimension;  // of the sampler
+#if HAS_BENDING
+    Bend bend;
+#endif
 #if HAS_PRIORITIES
     Bodies bodies;
 #endif
@@ -95,14 +99,18 @@ Sampler slot_sampler(Batch batch, uint slot, uint dimension) {
 }
 
 void store_path(uint slot, Path path) {
+    float end = begin_ray(path);
     ray_origins[slot] = vec4(path.origin, path.pdf);
-    ray_directions[slot] = vec4(path.direction, INFINITY);
+    ray_directions[slot] = vec4(path.direction, end);
     PathState s;
     s.throughput = path.throughput;
     s.depth = path.depth;
     s.reference = path.reference;
     s.medium = path.medium;
     s.dimension = path.random.dimension;
+#if HAS_BENDING
+    s.bend = path.bend;
+#endif
 #if HAS_PRIORITIES
     s.bodies = path.bodies;
 #endif
@@ -142,6 +150,9 @@ Path load_path(Batch batch, uint slot) {
     path.direction = ray_directions[slot].xyz;
     path.throughput = s.throughput;
     path.depth = s.depth;
+#if HAS_BENDING
+    path.bend = s.bend;
+#endif
     path.reference = s.reference;
     path.medium = s.medium;
 #if HAS_PRIORITIES

@@ -8,6 +8,7 @@
 // Participating Media", section 3.2), with the least density of a brick as the control.
 #include "lib/density_grid.glsl"
 #include "lib/free_path.glsl"
+#include "lib/plain_media.glsl"
 
 struct Grid {
     GridRef file;            //: required. OpenVDB or NRRD file, or {"name", "grid", "translation", "rotation", "scale"}.
@@ -18,7 +19,7 @@ struct Grid {
     PhaseRef phase;          //: {"class":"isotropic"}. Phase function, by which it scatters.
 };
 
-Spectrum grid_ior(Grid r) { return spectrum_value(r.ior); }
+Spectrum grid_ior(Grid r, vec3 position) { return spectrum_value(r.ior); }
 
 // At density 1.
 Spectrum grid_unit_extinction(Grid r) { return r.density * (spectrum_value(r.absorption) + spectrum_value(r.scattering)); }
@@ -115,3 +116,5 @@ Spectrum grid_scattering(Grid r, vec3 position) {
 }
 
 uint grid_phase(Grid r) { return r.phase.ref; }
+
+NEVER_BENDS(Grid, grid)

@@ -1,5 +1,6 @@
 // A medium that is the same everywhere: refractive index, absorption and scattering (Beer-Lambert).
 #include "lib/free_path.glsl"
+#include "lib/plain_media.glsl"
 
 struct Homogeneous {
     SpectrumRef ior;         //: 1 in [0.1, 100] ior. Real refractive index.
@@ -8,7 +9,7 @@ struct Homogeneous {
     PhaseRef phase;          //: {"class":"isotropic"}. Phase function, by which it scatters.
 };
 
-Spectrum homogeneous_ior(Homogeneous r) { return spectrum_value(r.ior); }
+Spectrum homogeneous_ior(Homogeneous r, vec3 position) { return spectrum_value(r.ior); }
 
 Spectrum homogeneous_extinction(Homogeneous r) { return spectrum_value(r.absorption) + spectrum_value(r.scattering); }
 
@@ -30,3 +31,5 @@ float homogeneous_mean_extinction(Homogeneous r, vec3 position) { return brightn
 Spectrum homogeneous_scattering(Homogeneous r, vec3 position) { return spectrum_value(r.scattering); }
 
 uint homogeneous_phase(Homogeneous r) { return r.phase.ref; }
+
+NEVER_BENDS(Homogeneous, homogeneous)

@@ -1,5 +1,6 @@
 // Starts a backward path: a point of the pixel (box filter), the receiver's ray through it.
 #include "interfaces/receiver.glsl"
+#include "lib/bending.glsl"
 #include "lib/path.glsl"
 #include "lib/start_media.glsl"
 #if BIDIRECTIONAL
@@ -22,6 +23,7 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.bodies = receiver_start_bodies();
 #endif
     path.depth = 0u;
+    start_bending(path);
 #if HAS_SCATTERING
     path.passage = 1.0;
 #endif

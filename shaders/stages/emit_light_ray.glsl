@@ -4,6 +4,7 @@
 #include "lib/light_emission.glsl"
 #include "lib/light_selection.glsl"
 #include "lib/primitives.glsl"
+#include "lib/bending.glsl"
 #include "lib/path.glsl"
 #include "lib/start_media.glsl"
 
@@ -30,6 +31,7 @@ Path emit_light_ray(uint index) {
     path.bodies = light_start_bodies(light, ray.front);
 #endif
     path.depth = 0u;
+    start_bending(path);
 #if HAS_SCATTERING
     path.passage = 1.0;
 #endif

@@ -29,7 +29,16 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
 bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Counters counters, out ShadowRay shadow) {
     shadow = no_shadow_ray();
     float carried = luminance(path.throughput);
+#if HAS_BENDING
+    Spectrum before = path.throughput;
+#endif
     bool scatters = cross_medium(path, hit);
+#if HAS_BENDING
+    if (is_bent(path) && hit.primitive == NO_RECORD) {
+        counters.absorbed += carried - luminance(path.throughput);
+        return end_step(path, counters);
+    }
+#endif
     if (!scatters && hit.primitive == NO_RECORD) {
         float left = luminance(path.throughput);
         counters.absorbed += carried - left;
@@ -51,6 +60,14 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
         p = locate(hit, path.origin, path.direction);
 #if HAS_PRIORITIES
         crossing = meet_faces(path.origin, path.direction, path.bodies, hit, p);
+#endif
+#if HAS_BENDING
+        if (is_bent(path) && !end_step_at(path, p, hit.t)) {
+            path.throughput = before;
+            return count_step(path, counters);
+        }
+#endif
+#if HAS_PRIORITIES
         if (!crossing.is_there) {
             pass_faces(path, p, crossing);
             counters.absorbed += carried - luminance(path.throughput);

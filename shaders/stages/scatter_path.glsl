@@ -93,7 +93,13 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
 #if CONNECT_VERTICES
     vertex_shadow = no_shadow_ray();
 #endif
+#if HAS_BENDING
+    Spectrum carried = path.throughput;
+#endif
     bool scatters = cross_medium(path, hit);
+#if HAS_BENDING
+    if (is_bent(path) && hit.primitive == NO_RECORD) return end_step(path, counters);
+#endif
     // collect_emission: of the primitive that is hit, or of all that surrounds the scene
     bool escapes = !scatters && hit.primitive == NO_RECORD;
     SurfacePoint p;
@@ -111,6 +117,14 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
         p = locate(hit, path.origin, path.direction);
 #if HAS_PRIORITIES
         crossing = meet_faces(path.origin, path.direction, path.bodies, hit, p);
+#endif
+#if HAS_BENDING
+        if (is_bent(path) && !end_step_at(path, p, hit.t)) {
+            path.throughput = carried;
+            return count_step(path, counters);
+        }
+#endif
+#if HAS_PRIORITIES
         if (!crossing.is_there) {
             pass_faces(path, p, crossing);
             return true;

@@ -1,5 +1,5 @@
 // Follows a shadow ray: what of its contribution reaches the point. Surfaces that let light pass straight on (alpha,
-// index-matched boundaries, thin glass) and absorbing media attenuate it; anything else blocks it.
+// index-matched boundaries, thin glass) and absorbing media attenuate it; anything else blocks it, media that bend rays, too.
 #include "lib/path.glsl"
 #include "lib/scattering.glsl"
 #include "lib/traversal.glsl"
@@ -70,6 +70,9 @@ Spectrum trace_shadow(ShadowRay shadow, inout Counters counters) {
         shadow.medium = medium_among(shadow.bodies);
 #else
         shadow.medium = scattering_medium(s, shadow.direction);
+#endif
+#if HAS_BENDING
+        if (medium_bends(shadow.medium)) return Spectrum(0);
 #endif
     }
 #endif

@@ -1,0 +1,106 @@
+// Paths through media that bend rays, a step of which is one ray of the path.
+//
+// No straight ray connects what lies behind a bend: for light sampling, connections and their weights it is a smooth surface
+// that light has passed (lib/mis.glsl), and shadow rays end where they meet such a medium.
+#include "lib/bent_ray.glsl"
+#include "lib/path.glsl"
+#include "lib/primitives.glsl"
+
+#if HAS_BENDING
+bool is_bent(Path path) { return path.bend.chord < INFINITY; }
+
+float greatest_coordinate(vec3 p) { return max(abs(p.x), max(abs(p.y), abs(p.z))); }
+
+// Nothing samples or connects the next event from the one before.
+void forget_event(inout Path path) {
+    path.pdf = 0.0;
+    path.reference = path.origin;
+#if HAS_SCATTERING
+    path.passage = 1.0;
+#endif
+#if BIDIRECTIONAL
+    // As update_mis() does where light is refracted.
+    path.vc += path.pending;
+    path.pending = path.vcm = 0.0;
+    path.flags |= PATH_AFTER_NARROW;
+#endif
+#if HAS_PATH_FLAGS
+    path.flags &= ~(PATH_STARTS | PATH_PARALLEL);
+#endif
+}
+#endif
+
+void start_bending(inout Path path) {
+#if HAS_BENDING
+    path.bend.chord = INFINITY;
+    path.bend.steps = 0u;
+#endif
+}
+
+// Readies the path for its next ray and returns where that ends at the latest.
+float begin_ray(inout Path path) {
+#if HAS_BENDING
+    float longest = path.bend.chord;
+    path.bend.chord = INFINITY;
+    if (medium_bends(path.medium)) {
+        forget_event(path);
+#if HAS_DISPERSION
+        Spectrum ior = medium_spectral_ior(path.medium, path.origin);
+        if (ior != Spectrum(ior.x)) make_monochrome(path);
+#endif
+        // Beyond all geometry rays go straight on: a medium that is not closed has no end.
+        if (!(dot(path.origin, path.origin) > SCENE_RADIUS * SCENE_RADIUS && dot(path.origin, path.direction) > 0.0)) {
+            path.bend.step = bent_step(path.medium, path.origin, path.direction, longest);
+            path.bend.chord = length(path.bend.step.chord);
+            path.direction = path.bend.step.chord / path.bend.chord;
+        }
+    }
+    // A little overlap, so that nothing falls between two steps.
+    if (is_bent(path)) return path.bend.chord + 16.0 * EPSILON * (greatest_coordinate(path.origin) + path.bend.chord);
+#endif
+    return INFINITY;
+}
+
+#if HAS_BENDING
+// At `position`, where `part` of the chord is behind: the path's direction is that of the bent ray. What a unit of radiance brings
+// to the pixel changes with the squared index (Veach 1997, section 5.2).
+void turn(inout Path path, vec3 direction, vec3 position) {
+    path.direction = direction;
+#if !FORWARD
+    float index = medium_ior(path.medium, position);
+    path.throughput *= dot(path.bend.step.start, path.bend.step.start) / (index * index);
+#endif
+    path.bend.chord = INFINITY;
+}
+
+bool count_step(inout Path path, inout Counters counters) {
+    if (++path.bend.steps < MAX_STEPS) return true;
+    counters.depth_limit++;
+    counters.depth_limit_lost += luminance(path.throughput);
+    return false;
+}
+
+// The chord has met nothing.
+bool end_step(inout Path path, inout Counters counters) {
+    path.origin += path.bend.chord * path.direction;
+    turn(path, normalize(path.bend.step.end), path.origin);
+    return count_step(path, counters);
+}
+
+// The chord has met a surface at p. False: the bent ray, which leaves the chord by some tolerance, does not meet it there, since it
+// goes to the side that the chord comes from; a shorter step will tell. That happens at grazing angles.
+bool end_step_at(inout Path path, SurfacePoint p, float distance) {
+    vec3 direction = normalize(optical_direction(path.bend.step, min(distance / path.bend.chord, 1.0)));
+    if (dot(direction, p.geometric_normal) * dot(path.direction, p.geometric_normal) <= 0.0) {
+        float shortest = 64.0 * EPSILON * greatest_coordinate(path.origin) + 4.0 * dot(abs(p.geometric_normal), p.error);
+        if (path.bend.chord > shortest) {
+            path.bend.chord *= 0.5;
+            path.direction = normalize(path.bend.step.start);
+            return false;
+        }
+        direction = path.direction;  // so short that it is the same
+    }
+    turn(path, direction, p.position);
+    return true;
+}
+#endif
