@@ -81,8 +81,9 @@ RenderCounters counters_from_json(const nlohmann::json& json) {
 // Measured on lavapipe: while the hierarchy fits in the cache and few classes share a kernel, state in
 // registers wins; beyond that long traversals of few lanes hold up the shading of all. A kernel for each
 // class never won there, up to seven classes (30 % slower, Mesa 25 and 22.3), and takes longer to compile: it
-// is left to --schedule.
+// is left to --schedule. A bent ray takes many steps, each of which would be a bounce with its kernels.
 Schedule choose_schedule(const Scene& scene) {
+    if (scene.features.bending) return Schedule::fused;
     size_t classes = 0;
     for (const auto& [interface, used] : scene.classes) classes += used.size();
     return scene.triangles + scene.shapes <= 4096 && classes <= 8 ? Schedule::fused : Schedule::wavefront;

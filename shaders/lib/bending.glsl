@@ -81,10 +81,9 @@ bool count_step(inout Path path, inout Counters counters) {
 }
 
 // The chord has met nothing.
-bool end_step(inout Path path, inout Counters counters) {
+void end_step(inout Path path) {
     path.origin += path.bend.chord * path.direction;
     turn(path, normalize(path.bend.step.end), path.origin);
-    return count_step(path, counters);
 }
 
 // The chord has met a surface at p. False: the bent ray, which leaves the chord by some tolerance, does not meet it there, since it

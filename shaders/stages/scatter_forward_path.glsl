@@ -36,7 +36,8 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
 #if HAS_BENDING
     if (is_bent(path) && hit.primitive == NO_RECORD) {
         counters.absorbed += carried - luminance(path.throughput);
-        return end_step(path, counters);
+        end_step(path);
+        return count_step(path, counters);
     }
 #endif
     if (!scatters && hit.primitive == NO_RECORD) {

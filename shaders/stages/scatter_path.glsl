@@ -98,7 +98,10 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
 #endif
     bool scatters = cross_medium(path, hit);
 #if HAS_BENDING
-    if (is_bent(path) && hit.primitive == NO_RECORD) return end_step(path, counters);
+    if (is_bent(path) && hit.primitive == NO_RECORD) {
+        end_step(path);
+        return count_step(path, counters);
+    }
 #endif
     // collect_emission: of the primitive that is hit, or of all that surrounds the scene
     bool escapes = !scatters && hit.primitive == NO_RECORD;
