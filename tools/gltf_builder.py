@@ -180,6 +180,19 @@ class Gltf:
             {"name": name, "camera": len(self.cameras) - 1, "matrix": look_at(position, target)}
         )
 
+    def orthographic(self, position, target, ymag, aspect, name="camera"):
+        """Shows `ymag` metres above and below the target."""
+        self.cameras.append(
+            {
+                "name": name,
+                "type": "orthographic",
+                "orthographic": {"xmag": ymag * aspect, "ymag": ymag, "znear": 0.01, "zfar": 100},
+            }
+        )
+        self.nodes.append(
+            {"name": name, "camera": len(self.cameras) - 1, "matrix": look_at(position, target)}
+        )
+
     # The file.
     def write(self, path):
         optics = {}
