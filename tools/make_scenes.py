@@ -427,7 +427,7 @@ def grin():
         " quarter of a pitch long, a half and a whole one (g L = pi/2, pi, 2 pi): the first shows the red square all over, since parallel"
         " rays meet on its far face; the second an F of the same size, upside down and the wrong way round; the third one upright. Of"
         " light 0.90 passes both faces. Below, from the left: the letter itself; a Luneburg lens, which touches the chart with the point"
-        " where all rays meet, all red and as bright as the square, since it reflects nothing; a ball of glass for comparison.",
+        " where all rays meet, all red and as bright as the square, since it reflects nothing; a ball of glass (index 1.5), whose image is distorted.",
     )
     blue = s.emitter("ground", 1, (0.05, 0.1, 0.4))
     yellow = s.emitter("letter", 1, (1, 0.8, 0.1))

@@ -9,7 +9,7 @@
 //   float    NAME_mean_extinction(R r, vec3 position)   extinction coefficient of an average lane, 1/m
 //   Spectrum NAME_scattering(R r, vec3 position)    scattering coefficient, 1/m
 //   uint     NAME_phase(R r)                        RecordRef of the phase function
-//   bool     NAME_bends(R r)                        the index varies in space: rays are bent. It does not scatter. Only then are asked:
+//   bool     NAME_bends(R r)                        its index varies in space: rays are bent, and it does not scatter. Only then:
 //   vec3     NAME_bending(R r, vec3 position)       half the gradient of the squared index of the hero wavelength, 1/m
 //   StepLimits NAME_step_limits(R r)                how long steps may be (lib/bent_step.glsl)
 //

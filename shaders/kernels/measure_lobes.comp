@@ -24,7 +24,8 @@ void main() {
         Sampler random = start_sampler(uvec2(0), k, 0u);
         vec2 uv = sample_2d(random);
         SurfaceContext c = SurfaceContext(uv, uv, vec4(1), 1.0, 1.0, false);
-        if ((m.flags & MATERIAL_SEPARATES_MEDIA) != 0u) c.ior_above = medium_ior(m.outside, vec3(0)), c.ior_below = medium_ior(m.inside, vec3(0));
+        if ((m.flags & MATERIAL_SEPARATES_MEDIA) != 0u)
+            c.ior_above = medium_ior(m.outside, vec3(0)), c.ior_below = medium_ior(m.inside, vec3(0));
 #if HAS_PRIORITIES
         // A body with a priority has vacuum around it, or any of the others.
         uint around = k % (uint(BODY_COUNT) + 1u);

@@ -62,8 +62,8 @@ float begin_ray(inout Path path) {
 }
 
 #if HAS_BENDING
-// At `position`, where `part` of the chord is behind: the path's direction is that of the bent ray. What a unit of radiance brings
-// to the pixel changes with the squared index (Veach 1997, section 5.2).
+// At `position`, on the chord or at its end: the path's direction is that of the bent ray there. Radiance changes with the
+// squared index on the way (Veach 1997, section 5.2).
 void turn(inout Path path, vec3 direction, vec3 position) {
     path.direction = direction;
 #if !FORWARD
@@ -86,8 +86,8 @@ void end_step(inout Path path) {
     turn(path, normalize(path.bend.step.end), path.origin);
 }
 
-// The chord has met a surface at p. False: the bent ray, which leaves the chord by some tolerance, does not meet it there, since it
-// goes to the side that the chord comes from; a shorter step will tell. That happens at grazing angles.
+// The chord has met a surface at p. False: the bent ray, which leaves the chord by some tolerance, does not meet it there, since
+// it goes to the side that the chord comes from; a shorter step will tell. That happens at grazing angles.
 bool end_step_at(inout Path path, SurfacePoint p, float distance) {
     vec3 direction = normalize(optical_direction(path.bend.step, min(distance / path.bend.chord, 1.0)));
     if (dot(direction, p.geometric_normal) * dot(path.direction, p.geometric_normal) <= 0.0) {

@@ -1,10 +1,10 @@
 // Rays through media whose refractive index n varies in space. With the optical direction T = n dR/ds at the position R and the
-// parameter t, dt = ds / n, they obey dR/dt = T and dT/dt = n grad n = grad n² / 2, which is integrated by a Runge-Kutta-Nyström
-// step of fourth order (Sharma, Kumar & Ghatak 1982, "Tracing rays through graded-index media: a new method").
+// parameter t, dt = ds / n, they obey dR/dt = T and dT/dt = n grad n = grad n² / 2, integrated by Runge-Kutta-Nyström steps of
+// fourth order (Sharma, Kumar & Ghatak 1982, "Tracing rays through graded-index media: a new method").
 //
 // What a step meets is found along its chord, as along any ray. So its length is chosen by how far the bent ray leaves the
-// chord, dt² / 8 times the part of grad n² / 2 across it: no more than the medium's tolerance. That is where a ray may be off when it meets
-// a surface. Its direction there, an interpolation of third order, and the ends of steps are more accurate by far.
+// chord, dt² / 8 times the part of grad n² / 2 across it: no more than the medium's tolerance. So far off may a ray be where it
+// meets a surface. Its direction there, an interpolation of third order, and the ends of steps are more accurate by far.
 #include "interfaces/medium_optics.glsl"
 
 #if HAS_BENDING
@@ -39,7 +39,7 @@ BentStep bent_step(uint medium, vec3 position, vec3 direction, float longest) {
     } while (subgroupAny(tries));
     s.chord = dt * (s.start + (dt / 6.0) * (a + 2.0 * b));
     s.end = s.start + (dt / 6.0) * (a + 4.0 * b + c);
-    // T(t) through the three values of grad n² / 2, then t for the part of the chord that is behind: along it the ray gains speed.
+    // T(t) by the three values of grad n² / 2, then t by the part of the chord that is behind: along it the ray gains speed.
     vec3 gain = s.end - s.start;
     s.bow = 0.5 * dt * (a - c) + (0.5 * dt * dot(gain, s.chord) / dot(s.chord, s.chord)) * gain;
     return s;

@@ -12,10 +12,12 @@ struct FishEye {
     float tolerance;         //: 1e-6 in (0, inf) m. By which a bent ray may leave the chords that stand for it.
 };
 
-// n / ior
-float fish_eye_profile(FishEye r, vec3 from_center) { return 1.0 / (1.0 + dot(from_center, from_center) / (r.radius * r.radius)); }
+// n / ior, at d from the centre
+float fish_eye_profile(FishEye r, vec3 d) { return 1.0 / (1.0 + dot(d, d) / (r.radius * r.radius)); }
 
-Spectrum fish_eye_ior(FishEye r, vec3 position) { return spectrum_value(r.ior) * fish_eye_profile(r, position - r.center.position); }
+Spectrum fish_eye_ior(FishEye r, vec3 position) {
+    return spectrum_value(r.ior) * fish_eye_profile(r, position - r.center.position);
+}
 
 bool fish_eye_bends(FishEye r) { return true; }
 

@@ -11,7 +11,7 @@ struct GradientIndex {
     SpectrumRef ior;         //: 1.5 in [0.1, 100] ior. Real refractive index at the centre.
     SpectrumRef absorption;  //: 0 in [0, inf) 1/m. Absorption coefficient.
     vec3 radial;             //: [0, 0, 0] 1/m², 1/m⁴, 1/m⁶. Coefficients of r², r⁴, r⁶, r being the distance from the axis.
-    vec3 axial;              //: [0, 0, 0] 1/m, 1/m², 1/m³. Coefficients of z, z², z³, z being measured along the axis from the centre.
+    vec3 axial;              //: [0, 0, 0] 1/m, 1/m², 1/m³. Coefficients of z, z², z³, z running along the axis from the centre.
     WorldPoint center;       //: [0, 0, 0] m. A point of the axis, in the world.
     Direction axis;          //: [0, 0, 1]. Its direction, of any length.
     float tolerance;         //: 1e-6 in (0, inf) m. By which a bent ray may leave the chords that stand for it.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <tuple>
 
 #include "host/scene/gltf.h"
 #include "tests/support/render_probe.h"
@@ -68,6 +69,30 @@ TEST_CASE("example lamps: the floor below a spot, below the same behind a pane, 
     CHECK(behind_pane / spot == doctest::Approx(0.923).epsilon(0.03));
     CHECK(square > 0.78);
     CHECK(square < 0.86);
+}
+
+TEST_CASE("example grin: rods of a quarter, a half and a whole pitch, and a Luneburg lens") {
+    const Estimates e = render_example("grin", 240, 160, 4);
+    const auto mean = [&](uint32_t x, uint32_t y, int channel) {
+        return window_mean(e, {x - 2, y - 2, 4, 4}, channel).mean;
+    };
+    const auto is_yellow = [&](uint32_t x, uint32_t y) { return mean(x, y, 1) > 0.5; };
+    // 0.8 pixels a mm; the letters are 20 x 36 mm, columns 72 pixels apart, rows 80.
+    const double passes =
+        2 * 1.6 / (1 + 1.6 * 1.6);  // of all light, through both faces, with what is reflected between them
+    for (const double x :
+         {48 - 16.0, 48 + 16.0})  // all of the rod shows what touches the middle of its far face
+        CHECK(mean(uint32_t(x), 40, 0) == doctest::Approx(0.9 * passes).epsilon(0.02));
+    CHECK(mean(120 - 16, 120 + 10, 0) == doctest::Approx(0.9).epsilon(0.01));
+    for (const auto& [column, row, turned] :
+         {std::tuple{120, 40, true}, {192, 40, false}, {48, 120, false}}) {
+        const int sign = turned ? -1 : 1;
+        CHECK(is_yellow(uint32_t(column - sign * 8), uint32_t(row - sign * 8)));  // the stem
+        CHECK(is_yellow(uint32_t(column - sign * 8), uint32_t(row + sign * 10)));
+        CHECK(is_yellow(uint32_t(column + sign * 6), uint32_t(row - sign * 11)));   // the upper bar
+        CHECK(!is_yellow(uint32_t(column + sign * 6), uint32_t(row + sign * 11)));  // nothing opposite
+        CHECK(!is_yellow(uint32_t(column + sign * 14), uint32_t(row)));
+    }
 }
 
 TEST_SUITE("long") {
