@@ -60,16 +60,17 @@ void main() {
     for (uint n = 1u; alive && n < room;) {
         DeviceVertex v;
         v.medium = path.medium;
+        float end = begin_ray(path);
         vec3 origin = path.origin, direction = path.direction;
         recorded_event.happened = recorded_event.followed = false;
-        Hit hit = find_hit(origin, direction, INFINITY);
+        Hit hit = find_hit(origin, direction, end);
         ShadowRay shadow;
 #if FORWARD
         alive = scatter_forward_path(path, hit, path_indices[i], counters, shadow);
 #else
         alive = scatter_path(path, hit, counters, shadow);
 #endif
-        if (alive && !recorded_event.happened) continue;  // past faces that are not there
+        if (alive && !recorded_event.happened) continue;  // past faces that are not there, or along a bent ray
         bool escapes = !recorded_event.happened, ends = !escapes && !recorded_event.followed;
         v.position = escapes ? origin + SCENE_RADIUS * direction : recorded_event.position;
         v.event = escapes ? RECORDED_ESCAPE : ends ? EVENT_NONE : recorded_event.event | (alive ? 0u : RECORDED_ROULETTE);
