@@ -29,7 +29,7 @@ const std::vector<Input::Shortcut>& Input::shortcuts() {
         {"right drag", "look around; with W A S D Q E held: fly (Shift fast, Ctrl slow)"},
         {"F, double click", "turn around what is under the pointer"},
         {"R, Home", "the camera as the scene has it"},
-        {"1 … 9, Page Up, Page Down", "cameras and receivers of the scene"},
+        {"1 to 9, Page Up, Page Down", "cameras and receivers of the scene"},
         {"L", "layer: radiance, error, albedo, normal, depth"},
         {"T", "tone curve: none, sRGB, ACES, AgX, false colours"},
         {"+, -", "exposure, a third of a stop"},

@@ -12,7 +12,7 @@ void draw_statistics_panel(ViewState& state) {
     ImGui::Text("%llu pass%s%s", (unsigned long long)s.passes, s.passes == 1 ? "" : "es",
                 s.at_rest ? ", at rest" : "");
     if (s.error && std::isfinite(s.error->value()))
-        ImGui::Text("relative error %.4f", s.error->value());
+        ImGui::Text("relative error %.3g", s.error->value());
     else
         ImGui::TextUnformatted("relative error not known yet");
     ImGui::Text("%.2f million rays/s", s.rays_per_second * 1e-6);
