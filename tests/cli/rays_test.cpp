@@ -7,7 +7,7 @@
 using namespace etendue;
 
 TEST_CASE("paths are written as JSON, as a table and as lines of glTF") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     const std::vector<std::string> rays = {"rays", "s.gltf", "--paths", "200", "-o"};
     const auto with = [&](std::vector<std::string> more) {
@@ -50,7 +50,7 @@ TEST_CASE("paths are written as JSON, as a table and as lines of glTF") {
 }
 
 TEST_CASE("what rays cannot do is one line") {
-    Program program;
+    Executable program;
     write_text(program.folder / "s.gltf", small_scene());
     const Run ending = program.run({"rays", "s.gltf", "-o", "r.txt"});
     CHECK(ending.code == 2);
