@@ -105,6 +105,34 @@ TEST_CASE("algorithms agree: bodies of graded index under a lamp, in many passes
     check_against_backward(room_of_lenses());
 }
 
+// Nothing but the bend keeps light sampling, connections and their weights from going straight through.
+TEST_CASE(
+    "algorithms agree: graded index within boundaries that are none, around the lamp, the floor and the "
+    "camera") {
+    SceneBuilder s;
+    add_room(s);
+    add_lamp(s, 1.5);
+    const auto graded = [&](const char* name, glm::dvec3 center, double ior) {
+        s.medium(name, {{"class", "gradient_index"},
+                        {"ior", ior},
+                        {"absorption", {0.05, 0.1, 0.2}},
+                        {"radial", {-0.5, 0, 0}},
+                        {"axial", {0.2, 0, 0}},
+                        {"center", {center.x, center.y, center.z}},
+                        {"axis", {0.3, 1, 0.2}},
+                        {"tolerance", 1e-3}});
+        return bounded(s, {{"class", "boundary"}}, name);
+    };
+    s.sphere(0.7, graded("ball", {-0.9, -0.6, 0}, 1.3), at(-0.9, -0.6, 0));
+    add_box(s, {0.8f, 0.8f, 0.8f}, s.lambertian(0.7), false, at(0.9, -1.6, 0));
+    add_box(s, {1.6f, 1.6f, 1.4f}, graded("floor", {0.9, -1.4, 0}, 1.2), false, at(0.9, -1.4, 0));
+    s.sphere(0.5, graded("camera", {0, 0, 1.8}, 1.1), at(0, 0, 1.8));
+    Comparison c;
+    c.backward = 96, c.forward = 0, c.bidirectional = 48;
+    c.largest_error = 0.01;
+    check_against_backward(s, c);
+}
+
 TEST_CASE("bent rays give the same bits in one kernel and in a kernel a stage") {
     Scene scene = compile_test_scene(room_of_lenses().import());
     RenderPlan plan;
