@@ -23,7 +23,6 @@
 namespace etendue {
 
 class ForwardRays;
-class StartMedia;
 
 // What --algorithm auto has come to, or what was asked for.
 struct AlgorithmChoice {

@@ -11,6 +11,7 @@
 
 #include "tests/support/geometry_probe.h"
 #include "tests/support/light_probe.h"
+#include "tests/support/random.h"
 
 namespace etendue {
 
@@ -236,16 +237,6 @@ class ClassProbe {
     CompiledShader sample_, meet_;
     Buffer records_;
     uint32_t ref_ = 0;
-};
-
-struct Random {
-    std::mt19937 engine;
-    explicit Random(uint32_t seed) : engine(seed) {}
-    float operator()(float lo, float hi) { return std::uniform_real_distribution<float>(lo, hi)(engine); }
-    glm::vec3 direction() {
-        const float z = (*this)(-1, 1), phi = (*this)(0, 6.2831853f), r = std::sqrt(1 - z * z);
-        return {r * std::cos(phi), r * std::sin(phi), z};
-    }
 };
 
 inline std::vector<glm::vec2> uniform_points(size_t n, uint32_t seed) {

@@ -6,20 +6,11 @@
 #include <random>
 
 #include "tests/support/geometry_probe.h"
+#include "tests/support/random.h"
 
 using namespace etendue;
 
 namespace {
-
-struct Random {
-    std::mt19937 engine;
-    explicit Random(uint32_t seed) : engine(seed) {}
-    float operator()(float lo, float hi) { return std::uniform_real_distribution<float>(lo, hi)(engine); }
-    glm::vec3 direction() {
-        const float z = (*this)(-1, 1), phi = (*this)(0, 6.2831853f), r = std::sqrt(1 - z * z);
-        return {r * std::cos(phi), r * std::sin(phi), z};
-    }
-};
 
 void add_quad(GeometryProbe& probe, const glm::dmat4& m, const glm::dvec3& a, const glm::dvec3& u,
               const glm::dvec3& v) {

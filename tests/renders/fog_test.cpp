@@ -7,6 +7,7 @@
 #include <functional>
 #include <numbers>
 
+#include "tests/support/phase_cases.h"
 #include "tests/support/render_probe.h"
 
 using namespace etendue;
@@ -21,30 +22,20 @@ constexpr double half = 0.875, lamp_z = -0.5, lamp_intensity = 3, sky = 2;
 // So little scatters that what does so twice is below 1e-4 of what does so once.
 constexpr double scattering[3] = {1e-4, 2e-4, 0.5e-4}, absorption[3] = {1, 0.5, 2};
 
-struct Phase {
-    json record;
-    std::function<double(double)> value;  // of the cosine of the angle of turning, 1/sr
-};
-std::vector<Phase> phases() {
-    const auto lobe = [](double g) {
-        return Phase{{{"class", "henyey_greenstein"}, {"g", g}},
-                     [=](double c) { return (1 - g * g) / (4 * pi * std::pow(1 + g * g - 2 * g * c, 1.5)); }};
-    };
-    return {{{{"class", "isotropic"}}, [](double) { return 1 / (4 * pi); }}, lobe(0.6), lobe(-0.4)};
-}
+std::vector<PhaseCase> phases() { return {isotropic_phase(), lobe_phase(0.6), lobe_phase(-0.4)}; }
 
 // What arrives at a point of the box from all directions and leaves upward: the sum of radiance times phase
 // function, per unit of scattering coefficient, for the three channels' extinction in 1/m.
-using Source = std::function<glm::dvec3(const Phase&, const glm::dvec3&, const glm::dvec3& extinction)>;
+using Source = std::function<glm::dvec3(const PhaseCase&, const glm::dvec3&, const glm::dvec3& extinction)>;
 
-glm::dvec3 from_lamp(const Phase& phase, const glm::dvec3& p, const glm::dvec3& extinction) {
+glm::dvec3 from_lamp(const PhaseCase& phase, const glm::dvec3& p, const glm::dvec3& extinction) {
     const glm::dvec3 d = p - glm::dvec3(0, 0, lamp_z);
     const double r = glm::length(d);
     return lamp_intensity * phase.value(d.z / r) / (r * r) * glm::exp(-extinction * r);
 }
 
 // Through the top alone: walls and floor are black.
-glm::dvec3 from_sky(const Phase& phase, const glm::dvec3& p, const glm::dvec3& extinction) {
+glm::dvec3 from_sky(const PhaseCase& phase, const glm::dvec3& p, const glm::dvec3& extinction) {
     constexpr int n = 40, turns = 64;
     glm::dvec3 sum(0);
     for (int i = 0; i < n; ++i) {
@@ -64,7 +55,7 @@ glm::dvec3 from_sky(const Phase& phase, const glm::dvec3& p, const glm::dvec3& e
 }
 
 std::vector<double> expected_image(const Source& source) {
-    const std::vector<Phase> all = phases();
+    const std::vector<PhaseCase> all = phases();
     const uint32_t width = cell_pixels * uint32_t(all.size());
     constexpr int over = 2, steps = 24;  // points of a pixel on each axis, and of its ray
     const glm::dvec3 coefficient(scattering[0], scattering[1], scattering[2]);
@@ -89,7 +80,7 @@ std::vector<double> expected_image(const Source& source) {
 
 SceneBuilder boxes_of_fog() {
     SceneBuilder s;
-    const std::vector<Phase> all = phases();
+    const std::vector<PhaseCase> all = phases();
     for (size_t i = 0; i < all.size(); ++i) {
         const std::string name = "fog " + std::to_string(i);
         s.medium(name, {{"scattering", scattering}, {"absorption", absorption}, {"phase", all[i].record}});
@@ -103,7 +94,7 @@ SceneBuilder boxes_of_fog() {
 void check_fog(const SceneBuilder& s, const Source& source, uint32_t backward, uint32_t both) {
     Scene scene = compile_test_scene(s.import());
     const std::vector<double> expected = expected_image(source);
-    const std::vector<Phase> all = phases();
+    const std::vector<PhaseCase> all = phases();
     RenderPlan plan;
     plan.height = cell_pixels, plan.width = cell_pixels * uint32_t(all.size()), plan.seeds = 16;
     for (const Algorithm algorithm : {Algorithm::backward, Algorithm::forward, Algorithm::bidirectional}) {

@@ -11,6 +11,7 @@
 #include "tests/renders/agreement_scenes.h"
 #include "tests/renders/algorithm_comparison.h"
 #include "tests/renders/sphere_row.h"
+#include "tests/support/phase_cases.h"
 
 using namespace etendue;
 using nlohmann::json;
@@ -24,19 +25,8 @@ int filled(SceneBuilder& s, const json& surface, const char* inside) {
 }
 const json boundary = {{"class", "boundary"}};
 
-struct Phase {
-    json record;
-    std::function<double(double)> value;  // of the cosine of the angle of turning, 1/sr
-};
-std::vector<Phase> phases() {
-    const auto lobe = [](double g) {
-        return Phase{{{"class", "henyey_greenstein"}, {"g", g}},
-                     [=](double c) { return (1 - g * g) / (4 * pi * std::pow(1 + g * g - 2 * g * c, 1.5)); }};
-    };
-    return {{{{"class", "isotropic"}}, [](double) { return 1 / (4 * pi); }},
-            {{{"class", "rayleigh"}}, [](double c) { return 3 / (16 * pi) * (1 + c * c); }},
-            lobe(0.6),
-            lobe(-0.3)};
+std::vector<PhaseCase> phases() {
+    return {isotropic_phase(), rayleigh_phase(), lobe_phase(0.6), lobe_phase(-0.3)};
 }
 
 // So little scatters that what does so twice is below 1e-4 of what does so once.
@@ -60,7 +50,7 @@ Estimates render_slab(const json& phase, bool grazing, Algorithm algorithm,
     return render_estimates(s.import(), plan);
 }
 
-double slab_radiance(const Phase& phase, bool grazing, double scattering, double absorption) {
+double slab_radiance(const PhaseCase& phase, bool grazing, double scattering, double absorption) {
     const double extinction = scattering + absorption;
     if (grazing) {  // the mean over x in [-0.5, 0.5] of exp(-extinction (x + 1))
         const double light = (std::exp(-0.5 * extinction) - std::exp(-1.5 * extinction)) / extinction;
@@ -69,14 +59,14 @@ double slab_radiance(const Phase& phase, bool grazing, double scattering, double
     const double cosine = std::cos(pi / 6), both = extinction * (1 + 1 / cosine);
     return sun * phase.value(-cosine) * scattering * (1 - std::exp(-both)) / both;
 }
-double slab_radiance(const Phase& phase, bool grazing, int c) {
+double slab_radiance(const PhaseCase& phase, bool grazing, int c) {
     return slab_radiance(phase, grazing, scattered[c], absorbed[c]);
 }
 
 }  // namespace
 
 TEST_CASE("single scattering in a slab is as bright as its integral, for every phase function and channel") {
-    for (const Phase& phase : phases())
+    for (const PhaseCase& phase : phases())
         for (const bool grazing : {false, true}) {
             if (grazing && phase.record["class"] == "rayleigh") continue;  // one kernel less
             const Estimates e = render_slab(phase.record, grazing, Algorithm::backward);
@@ -102,7 +92,7 @@ TEST_CASE("single scattering in a slab has the colour that its integral has over
     };
     const json scattering = table(3e-4, 1e-4, 0.2e-4), absorption = table(0.3, 1, 4);
     const SpectralTable s = factor(scattering), a = factor(absorption);
-    const Phase phase = phases()[2];
+    const PhaseCase phase = phases()[2];
     const glm::dvec3 expected = rgb_of_radiance(
         white_light() * tabulate([&](double nm) { return slab_radiance(phase, false, s.at(nm), a.at(nm)); }));
     const Estimates e = render_slab(phase.record, false, Algorithm::backward, scattering, absorption);
@@ -119,7 +109,7 @@ TEST_CASE("single scattering in a slab has the colour that its integral has over
 
 TEST_CASE("single scattering in a slab, by forward rays and by both") {
     for (const Algorithm algorithm : {Algorithm::forward, Algorithm::bidirectional}) {
-        const Phase phase = phases()[2];
+        const PhaseCase phase = phases()[2];
         const Estimates e = render_slab(phase.record, false, algorithm);
         for (int c = 0; c < 3; ++c) {
             const WindowMean m = window_mean(e, {}, c);
@@ -136,7 +126,7 @@ TEST_CASE("single scattering in a slab, by forward rays and by both") {
 TEST_CASE("single scattering that only merging brings: lit by a mirror and seen in another") {
     // The slab of above. The camera looks along -x at a mirror that shows the slab from above; light falls on
     // it from a mirror that stands upright at x = -2.2, and straight from the sky only beside what is seen.
-    const Phase phase = phases()[2];
+    const PhaseCase phase = phases()[2];
     SceneBuilder s;
     s.medium("haze", {{"scattering", scattered}, {"absorption", absorbed}, {"phase", phase.record}});
     add_box(s, {4, 4, 1}, filled(s, boundary, "haze"), false, at(0, 0, -0.5));
