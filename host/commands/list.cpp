@@ -1,6 +1,9 @@
 // etendue classes, etendue devices: what there is.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cctype>
+
 #include "host/commands.h"
 #include "host/error.h"
 #include "host/gpu/device.h"
@@ -12,6 +15,15 @@ namespace {
 std::string shown_default(const Parameter& p) {
     if (p.required) return "required";
     return p.default_value.is_null() ? "none" : p.default_value.dump();
+}
+
+// The first sentence, on one line. ("al. 2007" ends none.)
+std::string first_sentence(const std::string& summary) {
+    std::string text = summary.substr(0, summary.find("\n\n"));
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    for (size_t end = 0; (end = text.find(". ", end)) != std::string::npos; ++end)
+        if (std::isupper(static_cast<unsigned char>(text[end + 2]))) return text.substr(0, end + 1);
+    return text;
 }
 
 void print_class(const ClassInfo& info) {
@@ -46,7 +58,7 @@ int classes_command(const ClassesOptions& options) {
             const ClassInfo& info = *registry.find(interface.interface, listed.name);  // compiles it
             found = true;
             if (options.name.empty())
-                fmt::print("    {:<16} {}\n", info.name, info.summary.substr(0, info.summary.find('\n')));
+                fmt::print("    {:<19} {}\n", info.name, first_sentence(info.summary));
             else
                 print_class(info);
         }

@@ -311,8 +311,8 @@ Device::~Device() {
 
 void set_debug_name(const Device& device, VkObjectType type, uint64_t handle, const std::string& name) {
     if (!device.debug_names) return;
-    static auto set = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
-        vkGetInstanceProcAddr(device.instance, "vkSetDebugUtilsObjectNameEXT"));
+    auto set = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
+        vkGetDeviceProcAddr(device.handle, "vkSetDebugUtilsObjectNameEXT"));
     VkDebugUtilsObjectNameInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT};
     info.objectType = type;
     info.objectHandle = handle;

@@ -1,4 +1,4 @@
-// cylinder: the open side of a cylinder around the z axis, centred at the origin, seen from outside. u runs around,
+// The open side of a cylinder around the z axis, centred at the origin, seen from outside. u runs around,
 // v from the lower to the upper rim.
 #include "lib/accurate_math.glsl"
 #include "lib/warps.glsl"

@@ -1,4 +1,4 @@
-// disk: in the xy plane around the origin, facing +z. u runs around, v from the centre to the rim.
+// A disk in the xy plane around the origin, facing +z. u runs around, v from the centre to the rim.
 #include "lib/accurate_math.glsl"
 #include "lib/warps.glsl"
 

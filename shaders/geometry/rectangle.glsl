@@ -1,4 +1,4 @@
-// rectangle: in the xy plane around the origin, facing +z. Seen from there u runs to the right (+x), v down (-y).
+// A rectangle in the xy plane around the origin, facing +z. Seen from there u runs to the right (+x), v down (-y).
 
 struct Rectangle {
     vec2 size;  //: required in (0, inf) m. Width along x and height along y.

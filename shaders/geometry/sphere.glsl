@@ -1,4 +1,4 @@
-// sphere: centred at the origin, seen from outside. Poles on the z axis; u runs around it, v from +z to -z.
+// A sphere centred at the origin, seen from outside. Poles on the z axis; u runs around it, v from +z to -z.
 #include "lib/accurate_math.glsl"
 #include "lib/frames.glsl"
 

@@ -1,4 +1,4 @@
-// triangle: the triangles of meshes. A record is at the same time an entry of the `primitives` buffer, which the
+// The triangles of meshes. A record is at the same time an entry of the `primitives` buffer, which the
 // hierarchy's leaves point into: entries of shapes and instances keep other things in the place of the vertices
 // (lib/bvh.glsl). Vertices are in world space, or in the mesh's frame under an instance; counter-clockwise as seen
 // from the side of the normal.

@@ -1,5 +1,5 @@
 // A medium whose squared refractive index is a polynomial of the distance from an axis and of the place along it, as that of
-// rods and fibres that focus:
+// rods and fibres that focus. With r and z, these two,
 //   n² = ior² (1 + radial · (r², r⁴, r⁶) + axial · (z, z², z³))
 // A rod of the focusing constant g has radial [-g², …] (Gomez-Reino, Perez & Bao 2002, "Gradient-Index Optics", section 1.2);
 // Luneburg's lens of radius a has ior √2, radial [-1 / (2 a²), …] and axial [0, -1 / (2 a²), 0]. It absorbs along the bent path.

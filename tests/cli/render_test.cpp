@@ -179,6 +179,10 @@ TEST_CASE("inspect, classes and devices tell what there is") {
         CAPTURE(word);
         CHECK(inspect.out.find(word) != std::string::npos);
     }
+    const Run list = program.run({"classes"});
+    CHECK(list.code == 0);
+    CHECK(list.out.find("that reflects and refracts (Walter et al. 2007), sampled by visible normals.\n") !=
+          std::string::npos);
     const Run classes = program.run({"classes", "conductor"});
     CHECK(classes.code == 0);
     for (const char* word : {"alpha", "[0, 1]", "reflectance", "multiscatter"})
