@@ -26,3 +26,7 @@ DensityLattice read_density_file(const std::filesystem::path& file, const std::s
 DensityLattice read_vdb(const std::filesystem::path& file, const std::string& grid);  // density_vdb.cpp
 
 }  // namespace etendue
+
+// Of the module that reads .vdb files, where the build has it.
+extern "C" void etendue_read_vdb(const std::filesystem::path& file, const std::string& grid,
+                                 etendue::DensityLattice& lattice);
