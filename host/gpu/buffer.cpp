@@ -152,9 +152,9 @@ void Buffer::read(void* data, uint64_t bytes, uint64_t offset) const {
     });
 }
 
-void Buffer::fill(uint32_t word) {
+void Buffer::fill(uint32_t word, uint64_t bytes) {
     VkCommandBuffer commands = begin_commands(*device_);
-    vkCmdFillBuffer(commands, buffer_, 0, VK_WHOLE_SIZE, word);
+    vkCmdFillBuffer(commands, buffer_, 0, bytes, word);
     submit_and_wait(*device_, commands);
 }
 

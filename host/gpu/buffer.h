@@ -27,7 +27,8 @@ class Buffer {
 
     void write(const void* data, uint64_t bytes, uint64_t offset = 0);
     void read(void* data, uint64_t bytes, uint64_t offset = 0) const;
-    void fill(uint32_t word);  // every word of the buffer
+    // The first `bytes`, a multiple of 4.
+    void fill(uint32_t word, uint64_t bytes = VK_WHOLE_SIZE);
 
     template <class T>
     std::vector<T> read_array(uint64_t count, uint64_t first = 0) const {

@@ -9,9 +9,7 @@ Film::Film(Device& device, uint32_t width, uint32_t height, bool merging)
     : width_(width),
       height_(height),
       merging_(merging),
-      pixels_(device, uint64_t(width) * height * pixel_bytes(), "Film") {
-    clear();
-}
+      pixels_(device, uint64_t(width) * height * pixel_bytes(), "Film") {}
 
 uint64_t Film::pixel_bytes() const { return sizeof(FilmPixel) + (merging_ ? sizeof(FilmBias) : 0); }
 
@@ -19,7 +17,7 @@ BufferTable Film::buffers() const { return {{"Film", &pixels_}}; }
 
 void Film::resize(uint32_t width, uint32_t height) { width_ = width, height_ = height; }
 
-void Film::clear() { pixels_.fill(0); }
+void Film::clear() { pixels_.fill(0, uint64_t(width_) * height_ * pixel_bytes()); }
 
 std::vector<std::byte> Film::read() const {
     return pixels_.read_array<std::byte>(uint64_t(width_) * height_ * pixel_bytes());

@@ -12,7 +12,8 @@ namespace etendue {
 
 class Film {
   public:
-    // Empty. `merging`: its kernels are compiled with MERGE_VERTICES, and pixels hold what tells the bias.
+    // What pixels hold is undefined until clear() or write(). `merging`: its kernels are compiled with
+    // MERGE_VERTICES, and pixels hold what tells the bias.
     Film(Device& device, uint32_t width, uint32_t height, bool merging = false);
     Film(const Film&) = delete;
 

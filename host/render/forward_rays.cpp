@@ -51,8 +51,7 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
       all_(forward_paths_a_pass(settings)),
       count_(all_),
       pass_(device, sizeof(ForwardPass), "ForwardPassTable"),
-      splats_(device, uint64_t(settings.width) * settings.height * (scene.features.spectral ? 32 : 24),
-              "Splats") {
+      splats_(device, splat_bytes(), "Splats") {
     splats_.fill(0);
     if (techniques.connect || techniques.merge) {
         const auto make = [&](const std::string& file, const BufferTable& table) {
@@ -79,6 +78,10 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
     groups_ = std::clamp((count_ + a_group - 1) / a_group, 1u, max_groups);
 }
 
+uint64_t ForwardRays::splat_bytes() const {
+    return uint64_t(settings_.width) * settings_.height * (scene_.features.spectral ? 32 : 24);
+}
+
 BufferTable ForwardRays::buffers() const {
     BufferTable table = {{"ForwardPassTable", &pass_}, {"Splats", &splats_}};
     if (vertices_) table.merge(vertices_->buffers());
@@ -98,7 +101,7 @@ void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, Ker
         expected_vertices_ = counts.stored;
         if (counts.wanted == counts.stored || count_ == 1) break;
         count_ = std::max(1u, uint32_t(0.9 * count_ * counts.stored / counts.wanted));
-        splats_.fill(0);
+        splats_.fill(0, splat_bytes());
         splits_++;
     }
     if (techniques_.merge && expected_vertices_ > 0) vertices_->build(commands, expected_vertices_);
@@ -123,7 +126,7 @@ void ForwardRays::restart(const FilmView& view) {
 }
 
 void ForwardRays::resume(uint32_t paths_a_pass) {
-    splats_.fill(0);
+    splats_.fill(0, splat_bytes());
     count_ = paths_a_pass > 0 ? std::min(paths_a_pass, all_) : all_;
 }
 

@@ -46,6 +46,7 @@ class ForwardRays {
     void resume(uint32_t paths_a_pass);
 
   private:
+    uint64_t splat_bytes() const;  // of the view at hand
     void trace_paths(CommandList& commands, KernelTimings& timings);
     const Scene& scene_;
     RenderSettings settings_;

@@ -110,6 +110,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     settings_.forward_paths = choice_.forward_paths;
     const Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
     film_ = std::make_unique<Film>(device, settings.width, settings.height, techniques.merge);
+    if (!settings.restarts_first) film_->clear();
     BufferTable film = film_->buffers();
     film["CounterSums"] = &counter_sums_;
     scene.features.spectral_bins = scene.features.spectral ? settings.spectral_bins : 0;

@@ -44,6 +44,7 @@ struct RenderSettings {
     std::optional<AlgorithmChoice> choice;  // of an earlier run: taken instead of algorithm and forward_paths
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
     float merge_radius = 1;                       // of the first pass, in widths of a pixel; > 0
+    bool restarts_first = false;                  // before any pass: the film is not cleared until then
     uint32_t spectral_bins = 0;  // of a spectral image, where paths carry wavelengths; 0 = none
 };
 
