@@ -1,8 +1,11 @@
 // etendue view: a window on a scene. The window is a module of its own, beside the executable.
 #include <dlfcn.h>
+#include <unistd.h>
 
-#include <chrono>
+#include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "host/commands.h"
 #include "host/error.h"
@@ -12,12 +15,19 @@
 
 namespace etendue {
 
-double seconds_now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+double seconds_since_start() {
+    std::ifstream file("/proc/self/stat");
+    std::string text;
+    std::getline(file, text);
+    // starttime, the twentieth field behind the name, in ticks since the machine started: proc(5).
+    std::istringstream fields(text.substr(text.rfind(')') + 1));
+    for (int i = 0; i < 20; ++i) fields >> text;
+    timespec now;
+    clock_gettime(CLOCK_BOOTTIME, &now);
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec) - std::stod(text) / double(sysconf(_SC_CLK_TCK));
 }
 
 int view_command(const ViewOptions& options) {
-    const double started = seconds_now();
     if (!options.stats.empty()) check_writable(options.stats);
     catch_interrupts();
     std::error_code error;
@@ -28,7 +38,7 @@ int view_command(const ViewOptions& options) {
     if (!module) fail_device("the window cannot be loaded: {}", dlerror());
     const auto entry = reinterpret_cast<decltype(&etendue_view)>(dlsym(module, view_module_entry));
     if (!entry) fail_device("the window cannot be loaded: {}", dlerror());
-    return entry(options, started);
+    return entry(options);
 }
 
 }  // namespace etendue

@@ -78,7 +78,8 @@ void PreviewSession::share() {
 void PreviewSession::run() {
     // Where the device is a CPU its threads are started from here, and give way to those that draw the
     // window.
-    setpriority(PRIO_PROCESS, id_t(gettid()), render_niceness);
+    const auto thread = id_t(gettid());
+    setpriority(PRIO_PROCESS, thread, getpriority(PRIO_PROCESS, thread) + render_niceness);
     try {
         worker_.open();
         share();

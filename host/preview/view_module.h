@@ -3,14 +3,13 @@
 #pragma once
 #include "host/commands.h"
 
-// Shows the scene until the window is closed; the exit code. Errors leave as Error. `started`: seconds_now()
-// when the program began.
-extern "C" int etendue_view(const etendue::ViewOptions& options, double started);
+// Shows the scene until the window is closed; the exit code. Errors leave as Error.
+extern "C" int etendue_view(const etendue::ViewOptions& options);
 
 namespace etendue {
 
 inline constexpr const char* view_module_name = "libetendue_view.so";
 inline constexpr const char* view_module_entry = "etendue_view";
-double seconds_now();  // of a clock that never goes back
+double seconds_since_start();  // of the process, with up to 0.01 s too much
 
 }  // namespace etendue

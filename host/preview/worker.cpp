@@ -191,6 +191,7 @@ std::unique_ptr<Renderer> PreviewWorker::make_renderer(Scene& scene, uint32_t re
                                                        const std::optional<AlgorithmChoice>& choice) {
     RenderSettings settings = settings_for(scene, receiver, request);
     settings.choice = choice;
+    settings.restarts_first = true;
     auto renderer = std::make_unique<Renderer>(*device_, scene, settings);
     renderer->set_interrupt(interrupt_);
     algorithm_ = request.algorithm;

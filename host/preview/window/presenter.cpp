@@ -17,6 +17,8 @@ void check_panels(VkResult result) {
     if (result < 0) check(result, "drawing the panels");
 }
 
+bool same(VkExtent2D a, VkExtent2D b) { return a.width == b.width && a.height == b.height; }
+
 void change_layout(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to) {
     VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
     const bool is_target = to == VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
@@ -91,10 +93,15 @@ Presenter::Presenter(GLFWwindow* window, const std::filesystem::path& shaders) :
     sources.folder = shaders;
     CompileOptions compile;
     compile.cache_folder = default_cache_folder();
-    shader_ = compile_shader(sources, "kernels/show_picture.comp", compile);
+    const auto program = [&](const char* file) {
+        return std::make_shared<const Program>(*device_, compile_shader(sources, file, compile));
+    };
+    encode_program_ = program("kernels/encode_picture.comp");
+    enlarge_program_ = program("kernels/enlarge_picture.comp");
     view_ = Buffer(*device_, sizeof(ViewTransform), "ViewTable");
     commands_ = std::make_unique<CommandList>(*device_);
     start_panels();
+    warm_up();
 }
 
 void Presenter::resized() {
@@ -139,40 +146,68 @@ void Presenter::start_panels() {
 }
 
 // Some more than is asked for, so that a window that is drawn larger does not want another at every step.
-void Presenter::reserve(Buffer& buffer, uint64_t bytes) {
+void Presenter::reserve(Buffer& buffer, uint64_t bytes, const std::string& name) {
     if (buffer && buffer.bytes() >= bytes) return;
-    const std::string name = &buffer == &picture_ ? "Picture" : "Shown";
     buffer = Buffer();
     buffer = Buffer(*device_, bytes + bytes / 2, name);
-    is_bound_ = false;
+    encode_ = Kernel();
+    enlarge_ = Kernel();
+}
+
+void Presenter::bind() {
+    if (encode_) return;
+    const BufferTable buffers = {
+        {"Picture", &picture_}, {"ViewTable", &view_}, {"Encoded", &encoded_}, {"Enlarged", &enlarged_}};
+    encode_ = Kernel(*device_, encode_program_, buffers);
+    enlarge_ = Kernel(*device_, enlarge_program_, buffers);
+}
+
+// Drivers finish compiling at the first dispatch.
+void Presenter::warm_up() {
+    reserve(picture_, 16, "Picture");
+    reserve(encoded_, 16, "Encoded");
+    reserve(enlarged_, 16, "Enlarged");
+    bind();
+    commands_->dispatch(encode_, 1);
+    commands_->dispatch(enlarge_, 1);
+    commands_->run();
 }
 
 void Presenter::develop(const PreviewPicture& picture, const ViewTransform& view) {
     const std::vector<glm::vec3>& values = picture.shown.empty() ? picture.radiance : picture.shown;
-    reserve(picture_, values.size() * sizeof(glm::vec3));
+    reserve(picture_, values.size() * sizeof(glm::vec3), "Picture");
+    reserve(encoded_, values.size() * 4, "Encoded");
     picture_.write(values.data(), values.size() * sizeof(glm::vec3));
     view_.write(&view, sizeof view);
-    picture_width_ = picture.width, picture_height_ = picture.height;
-    shown_width_ = shown_height_ = 0;
+    picture_extent_ = {picture.width, picture.height};
+    is_encoded_ = false;
+    shown_extent_ = {};
 }
 
+// The picture to the window's size, in `encoded_` where it has that size, else in `enlarged_`.
 void Presenter::enlarge() {
     const VkExtent2D extent = swapchain_->extent();
-    if (picture_width_ == 0 || (shown_width_ == extent.width && shown_height_ == extent.height)) return;
-    const uint32_t pixels = extent.width * extent.height;
-    reserve(shown_, uint64_t(pixels) * 4);
-    if (!is_bound_)
-        show_picture_ =
-            Kernel(*device_, shader_, {{"Picture", &picture_}, {"ViewTable", &view_}, {"Shown", &shown_}});
-    is_bound_ = true;
-    commands_->dispatch(show_picture_, (pixels + show_picture_.group_size() - 1) / show_picture_.group_size(),
-                        {{"width", extent.width},
-                         {"height", extent.height},
-                         {"picture_width", picture_width_},
-                         {"picture_height", picture_height_},
-                         {"blue_first", uint32_t(format_.format == VK_FORMAT_B8G8R8A8_UNORM)}});
+    if (picture_extent_.width == 0 || same(shown_extent_, extent)) return;
+    const uint32_t pixels = extent.width * extent.height,
+                   picture_pixels = picture_extent_.width * picture_extent_.height;
+    reserve(enlarged_, uint64_t(pixels) * 4, "Enlarged");
+    bind();
+    const auto groups = [](const Kernel& kernel, uint32_t items) {
+        return (items + kernel.group_size() - 1) / kernel.group_size();
+    };
+    if (!is_encoded_)
+        commands_->dispatch(encode_, groups(encode_, picture_pixels),
+                            {{"pixels", picture_pixels},
+                             {"blue_first", uint32_t(format_.format == VK_FORMAT_B8G8R8A8_UNORM)}});
+    if (!same(picture_extent_, extent))
+        commands_->dispatch(enlarge_, groups(enlarge_, pixels),
+                            {{"width", extent.width},
+                             {"height", extent.height},
+                             {"picture_width", picture_extent_.width},
+                             {"picture_height", picture_extent_.height}});
     commands_->run();
-    shown_width_ = extent.width, shown_height_ = extent.height;
+    is_encoded_ = true;
+    shown_extent_ = extent;
 }
 
 void Presenter::record_frame(VkCommandBuffer commands, const Swapchain::Frame& frame, ImDrawData* panels) {
@@ -181,12 +216,13 @@ void Presenter::record_frame(VkCommandBuffer commands, const Swapchain::Frame& f
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
     change_layout(commands, frame.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-    if (shown_width_ > 0) {
+    if (shown_extent_.width > 0) {
         VkBufferImageCopy copy{};
         copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         copy.imageExtent = {extent.width, extent.height, 1};
-        vkCmdCopyBufferToImage(commands, shown_.handle(), frame.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                               1, &copy);
+        const Buffer& shown = same(picture_extent_, extent) ? encoded_ : enlarged_;
+        vkCmdCopyBufferToImage(commands, shown.handle(), frame.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                               &copy);
     } else {
         const VkClearColorValue black{{0.0f, 0.0f, 0.0f, 1.0f}};
         const VkImageSubresourceRange all{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};

@@ -33,8 +33,10 @@ class Presenter {
   private:
     void start_panels();
     void record_frame(VkCommandBuffer commands, const Swapchain::Frame& frame, ImDrawData* panels);
-    void reserve(Buffer& buffer, uint64_t bytes);
-    void enlarge();  // the picture to the window's size
+    void reserve(Buffer& buffer, uint64_t bytes, const std::string& name);
+    void bind();
+    void warm_up();
+    void enlarge();
     GLFWwindow* window_;
     std::unique_ptr<Device> device_;
     VkSurfaceKHR surface_ = VK_NULL_HANDLE;
@@ -42,15 +44,15 @@ class Presenter {
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
     VkSurfaceFormatKHR format_{};
     std::unique_ptr<Swapchain> swapchain_;
-    CompiledShader shader_;
-    Buffer picture_, view_, shown_;
-    Kernel show_picture_;
+    std::shared_ptr<const Program> encode_program_, enlarge_program_;
+    Buffer picture_, view_, encoded_, enlarged_;
+    Kernel encode_, enlarge_;  // none until their buffers are there
     std::unique_ptr<CommandList> commands_;
     VkFence fence_ = VK_NULL_HANDLE;
     VkCommandBuffer frame_commands_ = VK_NULL_HANDLE;
-    uint32_t picture_width_ = 0, picture_height_ = 0;  // 0 = none yet
-    uint32_t shown_width_ = 0, shown_height_ = 0;      // of what shown_ holds
-    bool has_panels_ = false, is_bound_ = false;       // the kernel, to the buffers
+    VkExtent2D picture_extent_{};  // nothing = none yet
+    VkExtent2D shown_extent_{};    // that the picture is ready for; nothing = none
+    bool has_panels_ = false, is_encoded_ = false;
 };
 
 }  // namespace etendue

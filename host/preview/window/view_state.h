@@ -62,7 +62,7 @@ struct ViewState {
     std::string notice;       // shown for some seconds
     double notice_at = -1e9;
     double pointer_x = 0, pointer_y = 0;        // pixels of the framebuffer
-    double longest_frame = 0, first_shown = 0;  // seconds; the latter since the start
+    double longest_frame = 0, first_shown = 0;  // seconds; the latter since the process started
     // As the panel shows them: those of the scene, with what is being edited.
     std::vector<LiveObject> objects;
     std::shared_ptr<const std::vector<LiveObject>> objects_from;

@@ -117,8 +117,7 @@ void write_view_stats(const ViewState& state, uint64_t presenter_bytes) {
 
 }  // namespace
 
-int run_view(const ViewOptions& options, double started) {
-    const auto since_start = [&] { return seconds_now() - started; };
+int run_view(const ViewOptions& options) {
     Bell bell;
     PreviewSession session(options, [&] { bell.ring(); });  // opens the scene while the window opens
     const Glfw glfw;
@@ -140,7 +139,7 @@ int run_view(const ViewOptions& options, double started) {
 
     std::shared_ptr<const PreviewPicture> developed;
     std::optional<ViewTransform> developed_as;
-    int frames_left = frames_after_events;
+    int frames_left = 1;
     double last_frame = 0;
     while (!glfwWindowShouldClose(state.window) && !interrupted()) {
         const double now = glfwGetTime(), next = last_frame + frame_seconds;
@@ -159,7 +158,8 @@ int run_view(const ViewOptions& options, double started) {
             continue;
         }
         if (input.take_resize()) presenter.resized();
-        if (input.take_events() || news || flies) frames_left = frames_after_events;
+        // Frames before the first picture would only delay it.
+        if (input.take_events() || news || flies) frames_left = state.picture ? frames_after_events : 1;
         // What stands for some time: messages end, movement comes to rest.
         if (start - state.notice_at < 5 || start - state.moved_at < 2 * moving_seconds)
             frames_left = std::max(frames_left, 1);
@@ -181,7 +181,7 @@ int run_view(const ViewOptions& options, double started) {
             }
         }
         if (!presenter.draw(ImGui::GetDrawData())) frames_left = std::max(frames_left, 1);
-        if (state.picture && state.first_shown == 0) state.first_shown = since_start();
+        if (state.picture && state.first_shown == 0) state.first_shown = seconds_since_start();
         last_frame = start;
         if (state.first_shown > 0) state.longest_frame = std::max(state.longest_frame, glfwGetTime() - start);
     }
@@ -191,6 +191,4 @@ int run_view(const ViewOptions& options, double started) {
 
 }  // namespace etendue
 
-extern "C" int etendue_view(const etendue::ViewOptions& options, double started) {
-    return etendue::run_view(options, started);
-}
+extern "C" int etendue_view(const etendue::ViewOptions& options) { return etendue::run_view(options); }
