@@ -91,20 +91,29 @@ void PreviewSession::run() {
     notify_();
 }
 
+// Null: there is none, or it has to wait for a film.
+std::function<void(PreviewScene&)> PreviewSession::next_task() {
+    const std::lock_guard lock(mutex_);
+    if (tasks_.empty() || !worker_.takes_tasks()) return nullptr;
+    auto task = std::move(tasks_.front());
+    tasks_.pop_front();
+    return task;
+}
+
 void PreviewSession::loop() {
     bool busy = true;
     auto next_watch = std::chrono::steady_clock::now() + watch_interval;
     while (true) {
-        std::deque<std::function<void(PreviewScene&)>> tasks;
         {
             std::unique_lock lock(mutex_);
-            const auto has_news = [&] { return stop_ || !tasks_.empty() || wanted_ != at_work_; };
+            const auto has_news = [&] {
+                return stop_ || (worker_.takes_tasks() && !tasks_.empty()) || wanted_ != at_work_;
+            };
             if (!busy) wake_.wait_until(lock, next_watch, has_news);
             if (stop_) return;
             at_work_ = wanted_;
-            tasks.swap(tasks_);
         }
-        for (auto& task : tasks) worker_.run_task(std::exchange(task, nullptr));
+        while (const auto task = next_task()) worker_.run_task(task);
         if (std::chrono::steady_clock::now() >= next_watch) {
             worker_.reload_changed();
             next_watch = std::chrono::steady_clock::now() + watch_interval;

@@ -19,7 +19,7 @@ class PreviewSession {
     PreviewSession(const PreviewSession&) = delete;
 
     void request(const PreviewRequest& request);  // the last one counts
-    // Runs on the thread between two slices of work, once there is a picture.
+    // Runs on the thread between two slices of work, in turn, once there is a film.
     void post(std::function<void(PreviewScene&)> task);
     std::shared_ptr<const PreviewPicture> picture() const;  // null = none yet
     PreviewStatus status() const;
@@ -28,6 +28,7 @@ class PreviewSession {
   private:
     void run();
     void loop();
+    std::function<void(PreviewScene&)> next_task();
     void share();
     bool is_stale();
     const std::function<void()> notify_;

@@ -236,7 +236,7 @@ bool PreviewWorker::choose_algorithm_at_rest(const PreviewRequest& request) {
 }
 
 void PreviewWorker::run_task(const std::function<void(PreviewScene&)>& task) {
-    if (!renderer_ || !current_) return;
+    if (!takes_tasks()) return;
     PreviewScene scene{*device_, *live_, *scene_, *renderer_, *current_, receiver_ref(*current_),
                        step_,    nullptr};
     try_change([&] {

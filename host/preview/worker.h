@@ -22,7 +22,9 @@ class PreviewWorker {
     void open();  // device and scene; fails as `render` does
     // One slice of some hundredths of a second, but where kernels are compiled. False: nothing is left to do.
     bool work(const PreviewRequest& request);
-    // Before the first picture nothing happens. An Error becomes the message.
+    // Is there a film that a task could work on? Not before the first one, and not after one was given up.
+    bool takes_tasks() const { return renderer_ && current_; }
+    // Where none can be taken nothing happens. An Error becomes the message.
     void run_task(const std::function<void(PreviewScene&)>& task);
     // Loads the scene again where its files or shaders have changed. An Error becomes the message, and what
     // was there stays.

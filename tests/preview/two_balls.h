@@ -41,10 +41,10 @@ inline Image headless(const Executable& program, const std::string& size,
 // Half a step by rounding, and what 32-bit logarithms and powers add.
 inline constexpr double rounding = 0.6;
 
-inline bool shows(XServer& x, const Image& image, const ViewSettings& settings) {
+inline bool shows(XServer& x, const Image& image, const ViewSettings& settings, double worst = 0) {
     double last = 0;
     const bool shown = x.wait_until([&](const Screenshot& shot) {
-        last = greatest_difference(shot, image, settings);
+        last = greatest_difference(shot, image, settings, worst);
         return last < rounding;
     });
     if (!shown) MESSAGE("greatest difference of the last picture: ", last, "/255");

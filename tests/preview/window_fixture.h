@@ -44,20 +44,26 @@ class ViewedScene {
     pid_t process = -1;
 };
 
-// Greatest difference of a channel, in steps of 1/255; of pictures of the same size.
-inline double greatest_difference(const Screenshot& shot, const Image& image, const ViewSettings& settings) {
+// Greatest difference of a channel, in steps of 1/255, leaving out the `worst` share of the pixels; of
+// pictures of the same size.
+inline double greatest_difference(const Screenshot& shot, const Image& image, const ViewSettings& settings,
+                                  double worst = 0) {
     if (shot.width != int(image.width) || shot.height != int(image.height)) return 255;
     const auto channels = picture_channels(image);
-    double greatest = 0;
+    std::vector<double> differences;
     for (uint32_t y = 0; y < image.height; ++y)
         for (uint32_t x = 0; x < image.width; ++x) {
             glm::dvec3 radiance;
             for (size_t c = 0; c < 3; ++c) radiance[int(c)] = plane(image, channels[c])[y * image.width + x];
             const glm::dvec3 color = 255.0 * shown_color(settings, radiance);
+            double greatest = 0;
             for (int c = 0; c < 3; ++c)
                 greatest = std::max(greatest, std::abs(color[c] - shot.at(int(x), int(y))[c]));
+            differences.push_back(greatest);
         }
-    return greatest;
+    const auto last = differences.end() - 1 - std::ptrdiff_t(worst * double(differences.size()));
+    std::nth_element(differences.begin(), last, differences.end());
+    return *last;
 }
 
 // Of the pixels, the share that differ by more than a few steps.

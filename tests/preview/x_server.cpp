@@ -82,6 +82,38 @@ void XServer::wait_for_window() {
     FAIL("no window came up");
 }
 
+bool XServer::wait_for_event(int type) {
+    for (int i = 0; i < 1200; ++i, sleep_milliseconds(50)) {
+        XEvent event;
+        if (XCheckTypedWindowEvent(display_, own_window_, type, &event)) return true;
+    }
+    return false;
+}
+
+std::string XServer::copied(const std::function<void()>& copy) {
+    const Atom clipboard = XInternAtom(display_, "CLIPBOARD", False),
+               text = XInternAtom(display_, "UTF8_STRING", False),
+               property = XInternAtom(display_, "COPIED", False);
+    if (!own_window_)
+        own_window_ = XCreateSimpleWindow(display_, DefaultRootWindow(display_), 0, 0, 1, 1, 0, 0, 0);
+    XSetSelectionOwner(display_, clipboard, own_window_, CurrentTime);  // until the program takes it
+    flush();
+    copy();
+    REQUIRE_MESSAGE(wait_for_event(SelectionClear), "nothing was copied");
+    XConvertSelection(display_, clipboard, text, property, own_window_, CurrentTime);
+    REQUIRE_MESSAGE(wait_for_event(SelectionNotify), "the clipboard does not answer");
+    Atom type;
+    int format;
+    unsigned long count, left;
+    unsigned char* data = nullptr;
+    XGetWindowProperty(display_, own_window_, property, 0, 1 << 16, True, AnyPropertyType, &type, &format,
+                       &count, &left, &data);
+    REQUIRE(data != nullptr);
+    const std::string result(reinterpret_cast<const char*>(data), count);
+    XFree(data);
+    return result;
+}
+
 void XServer::resize(int width, int height) {
     XResizeWindow(display_, window_, unsigned(width), unsigned(height));
     flush();

@@ -30,16 +30,20 @@ class XServer {
     void hold(const char* name, bool down);
     void move(int x, int y);
     void button(int number, bool down);
+    void press(int button) { this->button(button, true), this->button(button, false); }
+    // Does `copy` and waits for what a program then offers on the clipboard; fails the test after a minute.
+    std::string copied(const std::function<void()>& copy);
     Screenshot screenshot();
     // Until what the window shows is as wanted; false after so many seconds.
     bool wait_until(const std::function<bool(const Screenshot&)>& is_right, double seconds = 60);
 
   private:
     void flush();
+    bool wait_for_event(int type);
     int process_ = -1;
     std::string name_;
     _XDisplay* display_ = nullptr;
-    unsigned long window_ = 0;
+    unsigned long window_ = 0, own_window_ = 0;  // the program's; one that is never shown
 };
 
 }  // namespace etendue

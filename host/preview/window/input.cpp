@@ -12,39 +12,15 @@ namespace etendue {
 namespace {
 
 constexpr double double_click_seconds = 0.3;
-constexpr double wheel_factor = 0.9;     // of the distance, a notch
-constexpr double dragged_powers = 4;     // of e of the distance, for the window's height
-constexpr double radii_a_second = 0.5;   // flying: of the scene
-constexpr double fast = 4, slow = 0.25;  // with Shift and Ctrl
+constexpr double double_click_distance = 4;  // between the two, in the window's coordinates
+constexpr double wheel_factor = 0.9;         // of the distance, a notch
+constexpr double dragged_powers = 4;         // of e of the distance, for the window's height
+constexpr double radii_a_second = 0.5;       // flying: of the scene
+constexpr double fast = 4, slow = 0.25;      // with Shift and Ctrl
 
 Input& of(GLFWwindow* window) { return *static_cast<Input*>(glfwGetWindowUserPointer(window)); }
 
 }  // namespace
-
-const std::vector<Input::Shortcut>& Input::shortcuts() {
-    static const std::vector<Shortcut> list = {
-        {"left drag", "orbit"},
-        {"middle drag, Shift + left drag", "pan"},
-        {"wheel, Ctrl + left drag", "dolly: nearer and farther"},
-        {"right drag", "look around; with W A S D Q E held: fly (Shift fast, Ctrl slow)"},
-        {"F, double click", "turn around what is under the pointer"},
-        {"R, Home", "the camera as the scene has it"},
-        {"1 to 9, Page Up, Page Down", "cameras and receivers of the scene"},
-        {"L", "layer: radiance, error, albedo, normal, depth"},
-        {"T", "tone curve: none, sRGB, ACES, AgX, false colours"},
-        {"+, -", "exposure, a third of a stop"},
-        {"0", "exposure 0"},
-        {"M", "meter the exposure"},
-        {"P", "paths of light on and off"},
-        {"Space", "pause and go on"},
-        {"C", "copy the camera as glTF"},
-        {"Ctrl + S", "save EXR and PNG"},
-        {"Tab", "panels on and off"},
-        {"?, F1", "this list"},
-        {"Esc", "close the list; quit"},
-    };
-    return list;
-}
 
 Input::Input(ViewState& state) : state_(state) {
     GLFWwindow* window = state.window;
@@ -155,7 +131,10 @@ void Input::on_button(int button, int action, int mods) {
     if (button == GLFW_MOUSE_BUTTON_LEFT) {
         drag_ = mods & GLFW_MOD_SHIFT ? Drag::pan : mods & GLFW_MOD_CONTROL ? Drag::dolly : Drag::orbit;
         const double now = glfwGetTime();
-        if (now - std::exchange(clicked_at_, now) < double_click_seconds) focus_at_pointer(state_);
+        const bool again = now - std::exchange(clicked_at_, now) < double_click_seconds;
+        const double moved =
+            std::hypot(x_ - std::exchange(clicked_x_, x_), y_ - std::exchange(clicked_y_, y_));
+        if (again && moved <= double_click_distance) focus_at_pointer(state_);
     }
     if (button == GLFW_MOUSE_BUTTON_MIDDLE) drag_ = Drag::pan;
     if (button == GLFW_MOUSE_BUTTON_RIGHT) drag_ = Drag::look;

@@ -1,8 +1,5 @@
 // Mouse and keys.
 #pragma once
-#include <string>
-#include <vector>
-
 #include "host/preview/window/view_state.h"
 
 namespace etendue {
@@ -16,11 +13,6 @@ class Input {
     bool take_events();  // has anything happened since the last call?
     bool take_resize();
 
-    struct Shortcut {
-        std::string keys, meaning;
-    };
-    static const std::vector<Shortcut>& shortcuts();
-
   private:
     void on_key(int key, int action, int mods);
     void on_button(int button, int action, int mods);
@@ -30,7 +22,7 @@ class Input {
     ViewState& state_;
     Drag drag_ = Drag::none;
     double x_ = 0, y_ = 0;  // of the pointer, in the window's coordinates
-    double clicked_at_ = -1e9;
+    double clicked_at_ = -1e9, clicked_x_ = 0, clicked_y_ = 0;
     bool events_ = true, resized_ = false;
 };
 

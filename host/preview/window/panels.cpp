@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "host/preview/window/input.h"
+#include "host/preview/window/shortcuts.h"
 
 namespace etendue {
 namespace {
@@ -49,11 +49,11 @@ void draw_help(ViewState& state) {
         "Keys and mouse", &state.help,
         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoCollapse);
     if (ImGui::BeginTable("shortcuts", 2)) {
-        for (const Input::Shortcut& shortcut : Input::shortcuts()) {
+        for (const auto& [keys, meaning] : shortcuts) {
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(shortcut.keys.c_str());
+            ImGui::TextUnformatted(keys);
             ImGui::TableNextColumn();
-            ImGui::TextUnformatted(shortcut.meaning.c_str());
+            ImGui::TextUnformatted(meaning);
         }
         ImGui::EndTable();
     }

@@ -104,14 +104,16 @@ void focus_at_pointer(ViewState& state) {
 
 void copy_camera(ViewState& state) {
     const double aspect = double(state.request.width) / std::max(1u, state.request.height);
-    state.session.post(
-        [results = state.results, aspect, index = state.request.receiver](PreviewScene& scene) {
-            const Receiver& receiver = scene.scene.receivers[index];
-            const std::string text = camera_as_gltf(receiver, aspect).dump(2);
-            const std::lock_guard lock(results->mutex);
-            results->clipboard = text;
-            results->notice = "the camera is on the clipboard, as glTF";
-        });
+    state.session.post([results = state.results, aspect, index = state.request.receiver,
+                        placement = state.pose.placement](PreviewScene& scene) {
+        if (index >= scene.scene.receivers.size()) return;
+        Receiver receiver = scene.scene.receivers[index];
+        receiver.world_from_local = placement;  // the scene's follows when its film begins
+        const std::string text = camera_as_gltf(receiver, aspect).dump(2);
+        const std::lock_guard lock(results->mutex);
+        results->clipboard = text;
+        results->notice = "the camera is on the clipboard, as glTF";
+    });
 }
 
 void save_image(ViewState& state) {
