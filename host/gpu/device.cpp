@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "host/error.h"
-#include "host/gpu/kernel.h"
+#include "host/gpu/program_store.h"
 
 namespace etendue {
 namespace {

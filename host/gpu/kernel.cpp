@@ -12,7 +12,6 @@ namespace etendue {
 namespace {
 
 constexpr uint32_t max_timed_dispatches = 1024;  // a command list; later ones run untimed
-constexpr size_t most_programs = 128;            // kept in a store, beside those in use
 
 }  // namespace
 
@@ -20,7 +19,8 @@ Program::Program(Device& device, const CompiledShader& shader)
     : device_(device),
       name_(shader.name),
       layout_(reflect_shader(shader.spirv)),
-      spirv_bytes_(shader.spirv.size() * 4) {
+      spirv_bytes_(shader.spirv.size() * 4),
+      file_(shader.file) {
     const AddressedShader addressed = use_addresses(shader.spirv);
     addressed_blocks_ = addressed.blocks;
     address_binding_ = addressed.binding;
@@ -71,26 +71,6 @@ Program::~Program() {
     vkDestroyPipeline(device_.handle, pipeline_, nullptr);
     vkDestroyPipelineLayout(device_.handle, pipeline_layout_, nullptr);
     vkDestroyDescriptorSetLayout(device_.handle, set_layout_, nullptr);
-}
-
-std::shared_ptr<const Program> ProgramStore::find(uint64_t key) {
-    const auto found = programs_.find(key);
-    if (found == programs_.end()) return nullptr;
-    found->second.last_use = ++uses_;
-    return found->second.program;
-}
-
-void ProgramStore::add(uint64_t key, std::shared_ptr<const Program> program) {
-    programs_[key] = {std::move(program), ++uses_};
-    while (programs_.size() > most_programs) {
-        auto oldest = programs_.end();
-        for (auto i = programs_.begin(); i != programs_.end(); ++i)
-            if (i->second.program.use_count() == 1 &&
-                (oldest == programs_.end() || i->second.last_use < oldest->second.last_use))
-                oldest = i;
-        if (oldest == programs_.end()) return;
-        programs_.erase(oldest);
-    }
 }
 
 Kernel::Kernel(Device& device, std::shared_ptr<const Program> program, const BufferTable& buffers)

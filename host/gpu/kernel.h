@@ -34,6 +34,7 @@ class Program {
     const std::string& name() const { return name_; }
     const ShaderLayout& layout() const { return layout_; }
     size_t spirv_bytes() const { return spirv_bytes_; }
+    const std::filesystem::path& file() const { return file_; }  // CompiledShader::file
 
   private:
     friend class Kernel;
@@ -42,27 +43,12 @@ class Program {
     std::string name_;
     ShaderLayout layout_;
     size_t spirv_bytes_;
+    std::filesystem::path file_;
     std::vector<std::string> addressed_blocks_;  // whose addresses stand in the buffer at address_binding_
     uint32_t address_binding_ = 0;
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
     VkPipelineLayout pipeline_layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
-};
-
-// The programs of a device by what they were compiled from, so that the same is never compiled twice while
-// somebody may ask for it again. Of programs that no kernel has the oldest go when there are many.
-class ProgramStore {
-  public:
-    std::shared_ptr<const Program> find(uint64_t key);  // null = none
-    void add(uint64_t key, std::shared_ptr<const Program> program);
-
-  private:
-    struct Entry {
-        std::shared_ptr<const Program> program;
-        uint64_t last_use = 0;
-    };
-    std::map<uint64_t, Entry> programs_;
-    uint64_t uses_ = 0;
 };
 
 // A program bound to its buffers, which must outlive it. Owns its Vulkan objects; movable.

@@ -5,10 +5,12 @@
 #include <glslang/Public/ShaderLang.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
+#include <mutex>
 #include <set>
 #include <spirv-tools/optimizer.hpp>
 
@@ -65,6 +67,15 @@ std::string first_error(const char* log) {
     return std::string(text);
 }
 
+constexpr uint64_t most_cache_bytes = 512 << 20;
+constexpr uint64_t file_bytes = 4096;  // that a file takes at least
+
+// For trim_cache.
+void note_use(const std::filesystem::path& path) {
+    std::error_code error;
+    std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now(), error);
+}
+
 bool read_spirv(const std::filesystem::path& path, Spirv& spirv) {
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file) return false;
@@ -73,6 +84,7 @@ bool read_spirv(const std::filesystem::path& path, Spirv& spirv) {
     spirv.resize(bytes / 4);
     file.seekg(0);
     file.read(reinterpret_cast<char*>(spirv.data()), std::streamsize(bytes));
+    note_use(path);
     return file.good() && spirv[0] == 0x07230203u;
 }
 
@@ -89,6 +101,8 @@ void write_cached(const std::filesystem::path& path, const void* data, size_t by
         std::filesystem::rename(temporary, path, error);
     else
         std::filesystem::remove(temporary, error);
+    static std::once_flag once;
+    std::call_once(once, [&] { trim_cache(path.parent_path(), most_cache_bytes); });
 }
 
 // Of the same kernel by its preprocessed source.
@@ -100,7 +114,9 @@ std::filesystem::path cached_spirv(const CompileOptions& options, const std::str
 // longer than all else of a start.
 bool read_hash(const std::filesystem::path& path, uint64_t& hash) {
     std::ifstream file(path, std::ios::binary);
-    return bool(file.read(reinterpret_cast<char*>(&hash), sizeof hash));
+    if (!file.read(reinterpret_cast<char*>(&hash), sizeof hash)) return false;
+    note_use(path);
+    return true;
 }
 
 void optimize(Spirv& spirv) {
@@ -134,6 +150,7 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
         known = options.cache_folder / fmt::format("{}-{:016x}.key", result.name, key);
         uint64_t hash = 0;
         if (read_hash(known, hash) && read_spirv(cached_spirv(options, result.name, hash), result.spirv)) {
+            result.file = cached_spirv(options, result.name, hash);
             result.from_cache = true;
             return result;
         }
@@ -154,7 +171,6 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
     const auto messages = EShMessages(EShMsgSpvRules | EShMsgVulkanRules);
     const TBuiltInResource* limits = GetDefaultResources();
 
-    std::filesystem::path cached;
     if (!options.cache_folder.empty()) {
         glslang::TShader shader(EShLangCompute);
         set_up(shader);
@@ -163,9 +179,9 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
         if (!shader.preprocess(limits, 460, ECoreProfile, false, false, messages, &preprocessed, includer))
             fail_input("{}", first_error(shader.getInfoLog()));
         const uint64_t hash = hash_text(preprocessed, version);
-        cached = cached_spirv(options, result.name, hash);
+        result.file = cached_spirv(options, result.name, hash);
         if (!known.empty()) write_cached(known, &hash, sizeof hash);
-        if (read_spirv(cached, result.spirv)) {
+        if (read_spirv(result.file, result.spirv)) {
             result.from_cache = true;
             return result;
         }
@@ -184,8 +200,43 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
     glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), result.spirv, &spv_options);
     if (options.optimize) optimize(result.spirv);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (!cached.empty()) write_cached(cached, result.spirv.data(), result.spirv.size() * 4);
+    if (!result.file.empty()) write_cached(result.file, result.spirv.data(), result.spirv.size() * 4);
     return result;
+}
+
+std::optional<CompiledShader> read_cached_shader(const std::filesystem::path& file) {
+    CompiledShader shader;
+    const std::string stem = file.stem().string();  // the kernel's name, and a hash
+    shader.name = stem.substr(0, stem.rfind('-'));
+    shader.file = file;
+    shader.from_cache = true;
+    if (!read_spirv(file, shader.spirv)) return std::nullopt;
+    return shader;
+}
+
+void trim_cache(const std::filesystem::path& folder, uint64_t bytes) {
+    struct Used {
+        std::filesystem::file_time_type time;
+        uint64_t bytes;
+        std::filesystem::path path;
+    };
+    std::vector<Used> files;
+    uint64_t total = 0;
+    std::error_code error;
+    for (std::filesystem::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+        std::error_code gone;  // another process may trim, too
+        const Used file{i->last_write_time(gone), std::max(file_bytes, uint64_t(i->file_size(gone))),
+                        i->path()};
+        if (gone) continue;
+        files.push_back(file);
+        total += file.bytes;
+    }
+    if (total <= bytes) return;
+    std::sort(files.begin(), files.end(), [](const Used& a, const Used& b) { return a.time < b.time; });
+    for (size_t i = 0; i < files.size() && total > bytes / 4 * 3; ++i) {
+        std::filesystem::remove(files[i].path, error);
+        total -= files[i].bytes;
+    }
 }
 
 std::filesystem::path default_cache_folder() {

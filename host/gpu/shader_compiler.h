@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ struct CompiledShader {
     std::string name;  // of the kernel: its file name without folder and ending
     Spirv spirv;
     bool from_cache = false;
-    double seconds = 0;  // compile time, 0 from the cache
+    double seconds = 0;          // compile time, 0 from the cache
+    std::filesystem::path file;  // of the cache, that holds it; empty = none
 };
 
 struct CompileOptions {
@@ -28,6 +30,13 @@ struct CompileOptions {
 // message, file and line.
 CompiledShader compile_shader(const ShaderSources& sources, const std::string& name,
                               const CompileOptions& options = {});
+
+// What such a file holds; nothing where it is gone.
+std::optional<CompiledShader> read_cached_shader(const std::filesystem::path& file);
+
+// Removes files of the cache that were not used for the longest time, until it takes three quarters of
+// `bytes`, where it takes more than that. A process does so by itself when it adds its first file.
+void trim_cache(const std::filesystem::path& folder, uint64_t bytes);
 
 // $XDG_CACHE_HOME/etendue or ~/.cache/etendue; created where needed; empty where neither can be.
 std::filesystem::path default_cache_folder();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "host/commands/open_scene.h"
 #include "host/error.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr double moving_seconds = 0.05;   // that a pass may take while the view moves
 constexpr double resting_seconds = 0.25;  // that the first pass of a picture at rest may take
 constexpr double slice_seconds = 0.1;     // of passes between two pictures
-constexpr uint32_t coarsest_step = 8;
+constexpr uint32_t coarsest_step = 16;
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -40,12 +41,16 @@ bool PreviewRequest::shows_the_same(const PreviewRequest& other) const {
 
 PreviewWorker::PreviewWorker(const ViewOptions& options, std::function<bool()> interrupt,
                              std::function<void()> changed)
-    : options_(options), interrupt_(std::move(interrupt)), changed_(std::move(changed)) {}
+    : options_(options),
+      interrupt_(std::move(interrupt)),
+      changed_(std::move(changed)),
+      start_programs_(options) {}
 
 PreviewWorker::~PreviewWorker() = default;
 
 void PreviewWorker::open() {
     device_ = create_device({options_.device, false});
+    device_->programs->expect(*device_, start_programs_.read());
     status_.device = device_->description.name;
     live_ = std::make_unique<LiveScene>(*device_, options_.scene, scene_options(options_));
     scene_ = live_->scene();
@@ -150,6 +155,7 @@ bool PreviewWorker::work(const PreviewRequest& request) {
     status_.rays_per_second = double(all_rays(renderer_->counters()) - rays) / taken;
     publish(request);
     update_status(false);
+    if (!std::exchange(has_started_, true)) start_programs_.write(scene_->kernels);
     return true;
 }
 

@@ -8,6 +8,7 @@
 
 #include "host/commands.h"
 #include "host/preview/preview.h"
+#include "host/preview/start_programs.h"
 #include "host/preview/watched_files.h"
 
 namespace etendue {
@@ -56,6 +57,8 @@ class PreviewWorker {
     const ViewOptions options_;
     const std::function<bool()> interrupt_;
     const std::function<void()> changed_;
+    const StartPrograms start_programs_;
+    bool has_started_ = false;  // there was a picture
     std::unique_ptr<Device> device_;
     std::unique_ptr<LiveScene> live_;
     std::shared_ptr<Scene> scene_;  // the renderer's

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "host/error.h"
+#include "host/gpu/program_store.h"
 #include "host/scene/scene_compiler.h"
 
 namespace etendue {
@@ -235,6 +236,7 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
         device.programs->add(key, program);
     }
     report.name = program->name(), report.spirv_bytes = program->spirv_bytes();
+    report.spirv = program->file();
     if (std::none_of(scene.kernels.begin(), scene.kernels.end(), [&](auto& k) { return k.key == key; }))
         scene.kernels.push_back(report);
     BufferTable table = buffers;

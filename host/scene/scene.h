@@ -37,6 +37,7 @@ struct KernelReport {
     bool from_cache = false;  // a folder its SPIR-V
     double seconds = 0;
     size_t spirv_bytes = 0;
+    std::filesystem::path spirv;  // of the cache; empty = none
 };
 
 struct SceneMemory;

@@ -15,7 +15,6 @@ namespace {
 struct Viewed {
     explicit Viewed(const std::string& text = two_balls, uint32_t spectral_bins = 0) {
         write_text(folder / "scene.gltf", text);
-        ViewOptions options;
         options.scene = folder / "scene.gltf";
         options.passes = 4;
         options.spectral_bins = spectral_bins;
@@ -40,6 +39,7 @@ struct Viewed {
         throw std::runtime_error("no such object");
     }
     TemporaryFolder folder;
+    ViewOptions options;
     std::function<bool()> interrupt;
     std::unique_ptr<PreviewWorker> worker;
     PreviewRequest request;
@@ -52,9 +52,9 @@ float green(const PreviewPicture& p, uint32_t x, uint32_t y) { return p.radiance
 TEST_CASE("a picture begins coarse and rests at full size with the passes that were asked for") {
     Viewed viewed;
     REQUIRE(viewed.worker->work(viewed.request));
-    CHECK(viewed.worker->picture()->step == 8);
-    CHECK(viewed.worker->picture()->width == 8);
-    CHECK(viewed.worker->picture()->height == 6);
+    CHECK(viewed.worker->picture()->step == 16);
+    CHECK(viewed.worker->picture()->width == 4);
+    CHECK(viewed.worker->picture()->height == 3);
     const PreviewPicture& picture = viewed.rest();
     CHECK(picture.step == 1);
     CHECK(picture.passes == 4);
@@ -179,4 +179,29 @@ TEST_CASE("a camera that is copied as glTF is the camera") {
     REQUIRE(matrix.size() == 16);
     CHECK(matrix[12] == doctest::Approx(5));
     CHECK(matrix[13] == doctest::Approx(0.3));
+}
+
+TEST_CASE("a start notes its programs, and the next one of the same scene has them made ahead") {
+    Viewed viewed;
+    CHECK(StartPrograms(viewed.options).read().empty());
+    viewed.rest();
+    std::map<uint64_t, std::string> noted;
+    for (const ExpectedProgram& program : StartPrograms(viewed.options).read()) {
+        CHECK(std::filesystem::exists(program.spirv));
+        noted[program.key] = program.spirv.filename().string();
+    }
+    for (const KernelReport& kernel : viewed.worker->status().kernels) {
+        REQUIRE(noted.contains(kernel.key));
+        CHECK(noted[kernel.key].starts_with(kernel.name + "-"));
+    }
+    ViewOptions other = viewed.options;
+    other.color = ColorMode::spectral;
+    CHECK(StartPrograms(other).read().empty());
+
+    PreviewWorker again(viewed.options, {}, [] {});
+    again.open();
+    CHECK(again.work(viewed.request));
+    for (const KernelReport& kernel : again.status().kernels)
+        if (kernel.name == "trace_paths") CHECK(kernel.from_store);  // the largest, which is begun first
+    CHECK(again.picture()->radiance.size() > 0);
 }

@@ -139,10 +139,12 @@ int run_view(const ViewOptions& options) {
 
     std::shared_ptr<const PreviewPicture> developed;
     std::optional<ViewTransform> developed_as;
-    int frames_left = 1;
+    int frames_left = frames_after_events;
     double last_frame = 0;
     while (!glfwWindowShouldClose(state.window) && !interrupted()) {
-        const double now = glfwGetTime(), next = last_frame + frame_seconds;
+        // Frames without a picture would only delay the first one.
+        const bool waits = last_frame > 0 && !state.picture;
+        const double now = glfwGetTime(), next = last_frame + (waits ? idle_seconds : frame_seconds);
         if (frames_left > 0 && next > now)
             glfwWaitEventsTimeout(next - now);
         else if (frames_left > 0)
@@ -158,12 +160,12 @@ int run_view(const ViewOptions& options) {
             continue;
         }
         if (input.take_resize()) presenter.resized();
-        // Frames before the first picture would only delay it.
-        if (input.take_events() || news || flies) frames_left = state.picture ? frames_after_events : 1;
+        if (input.take_events() || news || flies) frames_left = frames_after_events;
         // What stands for some time: messages end, movement comes to rest.
         if (start - state.notice_at < 5 || start - state.moved_at < 2 * moving_seconds)
             frames_left = std::max(frames_left, 1);
-        if (frames_left == 0 || start < next) continue;
+        const bool is_first = waits && state.picture;
+        if (frames_left == 0 || (start < next && !is_first)) continue;
         --frames_left;
 
         ImGui::GetIO().FontGlobalScale = state.content_scale / first_scale;  // moved to another display
