@@ -108,10 +108,18 @@ void read_surface_extensions(GltfImport& import, const JsonAt& material, json& p
             else
                 parameters[m.parameter] = number_value(*at, 0, 1);
         }
-        if (find(*extension, "clearcoatNormalTexture"))
-            warn_once(import, "clearcoatNormalTexture", *extension,
-                      "clearcoatNormalTexture is ignored: a coat has the normals of what it covers");
     }
+}
+
+// A coat has normals of its own: those of the mesh, bent by its map alone.
+void read_coat_normals(GltfImport& import, const JsonAt& material, json& parameters) {
+    std::optional<JsonAt> coat = find_extension(material, "KHR_materials_clearcoat");
+    if (!coat) return;
+    std::optional<JsonAt> map = find_object(*coat, "clearcoatNormalTexture");
+    const double scale = map ? number(*map, "scale", 1, -max_coordinate, max_coordinate) : 0;
+    if (scale != 0)
+        read_texture(import, *coat, "clearcoatNormalTexture", parameters, "clearcoat_normal_texture");
+    if (map || find(material, "normalTexture")) parameters["clearcoat_normal_scale"] = scale != 0 ? scale : 1;
 }
 
 // The parameters of class `principled`, as glTF 2.0, section 3.9 and its appendix B name the quantities.
@@ -133,6 +141,7 @@ json principled_parameters(GltfImport& import, const JsonAt& material) {
         read_texture(import, *transmission, "transmissionTexture", p, "transmission_texture");
     }
     read_surface_extensions(import, material, p);
+    read_coat_normals(import, material, p);
     return p;
 }
 

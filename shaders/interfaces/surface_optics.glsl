@@ -23,13 +23,30 @@
 #include "lib/warps.glsl"
 #include "lib/textures.glsl"
 
+#ifndef HAS_NORMAL_MAPS
+#define HAS_NORMAL_MAPS 0
+#endif
 struct SurfaceContext {
     vec2 uv0, uv1;          // texture coordinates
     vec4 color;             // vertex color, linear
     float ior_above;        // real refractive index of the medium on the side of +z
     float ior_below;
     bool importance;
+#if HAS_NORMAL_MAPS
+    mat3 mesh_frame;        // tangent, bitangent and normal that no map has bent, in the local frame
+#endif
 };
+
+SurfaceContext surface_context(vec2 uv0, vec2 uv1, vec4 color, float ior_above, float ior_below, bool importance) {
+    SurfaceContext c;
+    c.uv0 = uv0, c.uv1 = uv1, c.color = color;
+    c.ior_above = ior_above, c.ior_below = ior_below;
+    c.importance = importance;
+#if HAS_NORMAL_MAPS
+    c.mesh_frame = mat3(1);
+#endif
+    return c;
+}
 
 const uint EVENT_NONE = 0u;      // absorbed
 const uint EVENT_REFLECT = 1u;

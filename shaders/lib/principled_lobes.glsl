@@ -49,18 +49,29 @@ const float COAT_F0 = 0.04;  // of index 1.5
 float principled_coat_fresnel(PrincipledMaterial m, float cos_o) {
     return m.coat * mix(COAT_F0, 1.0, schlick_weight(cos_o));
 }
-float principled_coat_passes(PrincipledMaterial m, float mu) {
-    if (!(m.coat > 0.0)) return 1.0;
+float principled_coat_passes(PrincipledMaterial m, vec3 w) {
+    float mu = principled_coat_cosine(m, w);
+    if (!(m.coat > 0.0 && mu > 0.0)) return 1.0;
     float average;
     return 1.0 - m.coat * schlick_bound(COAT_F0, 1.0, m.coat_alpha, m.coat_alpha < SMOOTH_ALPHA, mu, average);
 }
-float principled_layers_pass(PrincipledMaterial m, float mu) {
-    float passes = principled_coat_passes(m, mu);
-    if (m.sheen_most > 0.0) passes *= 1.0 - m.sheen_most * sheen_albedo_bound(mu, m.sheen_roughness);
+float principled_layers_pass(PrincipledMaterial m, vec3 w) {
+    float passes = principled_coat_passes(m, w);
+    if (m.sheen_most > 0.0) passes *= 1.0 - m.sheen_most * sheen_albedo_bound(w.z, m.sheen_roughness);
     return passes;
 }
-float principled_layers_pass(PrincipledMaterial m, float mu_o, float mu_i) {
-    return min(principled_layers_pass(m, mu_o), principled_layers_pass(m, mu_i));
+float principled_layers_pass(PrincipledMaterial m, vec3 wo, vec3 wi) {
+    return min(principled_layers_pass(m, wo), principled_layers_pass(m, wi));
+}
+
+// The coat's f times the cosine that belongs to the direction of light, about its own normal; what the caller multiplies
+// by is about z, and forward rays meet the surface with that cosine (Veach 1997, section 5.3.2).
+float principled_coat_correction(PrincipledMaterial m, vec3 wo, vec3 wi) {
+#if COAT_HAS_NORMAL
+    if (m.importance)
+        return principled_coat_cosine(m, wo) * wi.z / max(principled_coat_cosine(m, wi) * wo.z, 1e-6);
+#endif
+    return 1.0;
 }
 
 float principled_transmission_scale(PrincipledMaterial m) {
@@ -135,7 +146,8 @@ struct PrincipledChoice {
     float straight_probability, diffuse_probability, coat_probability, sheen_probability, facet_probability;  // sum 1
 };
 
-PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
+PrincipledChoice principled_choice(PrincipledMaterial m, vec3 wo) {
+    float mu_o = wo.z, coat_mu = principled_coat_cosine(m, wo);
     Spectrum reflected, transmitted;
     principled_facet(m, mu_o, reflected, transmitted);
     PrincipledChoice choice;
@@ -145,7 +157,7 @@ PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
         transmitted = Spectrum(0);
     }
     choice.reflected = reflected, choice.transmitted = transmitted;
-    float passes = principled_layers_pass(m, mu_o);
+    float passes = principled_layers_pass(m, wo);
     choice.straight = Spectrum(1.0 - m.coverage) + passes * choice.straight;
     float average;
     float straight = brightness(choice.straight);
@@ -155,9 +167,9 @@ PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
     // nothing.
     float facets = m.coverage * max(passes * brightness(reflected + transmitted), 0.02);
     float coat = 0.0, sheen = 0.0;
-    if (m.coat > 0.0) coat = m.coverage * max(principled_coat_fresnel(m, mu_o), 0.02);
+    if (m.coat > 0.0 && coat_mu > 0.0) coat = m.coverage * max(principled_coat_fresnel(m, coat_mu), 0.02);
     if (m.sheen_most > 0.0)
-        sheen = m.coverage * principled_coat_passes(m, mu_o) * brightness(m.sheen) *
+        sheen = m.coverage * principled_coat_passes(m, wo) * brightness(m.sheen) *
                 max(sheen_albedo_bound(mu_o, m.sheen_roughness), 0.02);
     float scale = 1.0 / (straight + diffuse + coat + sheen + facets);
     choice.straight_probability = straight * scale;
@@ -170,22 +182,25 @@ PrincipledChoice principled_choice(PrincipledMaterial m, float mu_o) {
 
 // f |cos wi| and its pdf, for wo above; directions turned.
 Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float pdf) {
-    PrincipledChoice choice = principled_choice(m, wo.z);
+    PrincipledChoice choice = principled_choice(m, wo);
     bool reflects = wi.z > 0.0;
     vec3 mirrored = vec3(wi.xy, abs(wi.z));
-    float passes = m.coverage * principled_layers_pass(m, wo.z, mirrored.z);
+    float passes = m.coverage * principled_layers_pass(m, wo, mirrored);
     float diffuse_through = principled_diffuse_through(m);
     Spectrum value = passes * principled_diffuse(m, wo.z, wi.z);
     pdf = choice.diffuse_probability * INV_PI * mirrored.z * (reflects ? 1.0 - diffuse_through : diffuse_through);
     if (m.sheen_most > 0.0 && reflects) {
-        float below_coat = min(principled_coat_passes(m, wo.z), principled_coat_passes(m, wi.z));
+        float below_coat = min(principled_coat_passes(m, wo), principled_coat_passes(m, wi));
         value += m.coverage * below_coat * sheen_reflection(wo, wi, m.sheen_roughness) * m.sheen;
         pdf += choice.sheen_probability * 0.5 * INV_PI;
     }
     if (m.coat > 0.0 && m.coat_alpha >= SMOOTH_ALPHA && reflects) {
-        vec3 h = reflection_normal(wo, wi);
-        value += m.coverage * principled_coat_fresnel(m, dot(wo, h)) * ggx_reflection(wo, wi, h, m.coat_alpha);
-        pdf += choice.coat_probability * ggx_reflection_pdf(wo, h, m.coat_alpha);
+        vec3 o = principled_to_coat(m, wo), i = principled_to_coat(m, wi), h = reflection_normal(o, i);
+        if (o.z > 0.0 && i.z > 0.0) {
+            value += m.coverage * principled_coat_fresnel(m, dot(o, h)) * ggx_reflection(o, i, h, m.coat_alpha) *
+                     principled_coat_correction(m, wo, wi);
+            pdf += choice.coat_probability * ggx_reflection_pdf(o, h, m.coat_alpha);
+        }
     }
     if (m.smooth_facets) return value;
 
@@ -202,19 +217,21 @@ Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float
 }
 
 // The part that is reflected or refracted as at a perfectly smooth surface, and its probability.
-Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoice choice, out float probability) {
+// A coat with normals of its own reflects elsewhere than the facets: `coat` says which of the two is meant.
+Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoice choice, bool coat, out float probability) {
     bool reflects = wi.z > 0.0;
     Spectrum value = Spectrum(0);
     probability = 0.0;
-    if (m.smooth_facets) {
+    bool facets = COAT_HAS_NORMAL == 0 || !coat, coat_too = COAT_HAS_NORMAL == 0 || coat;
+    if (m.smooth_facets && facets) {
         float part = principled_reflection_part(choice.reflected, choice.transmitted);
         probability = choice.facet_probability * (reflects ? part : 1.0 - part);
-        value = principled_layers_pass(m, wo.z, abs(wi.z)) *
+        value = principled_layers_pass(m, wo, vec3(wi.xy, abs(wi.z))) *
                 (reflects ? choice.reflected : choice.transmitted * principled_transmission_scale(m));
     }
-    if (reflects && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA) {
+    if (reflects && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA && coat_too) {
         probability += choice.coat_probability;
-        value += principled_coat_fresnel(m, wo.z);
+        value += principled_coat_fresnel(m, principled_coat_cosine(m, wo)) * principled_coat_correction(m, wo, wi);
     }
     return m.coverage * value;
 }

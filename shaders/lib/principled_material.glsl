@@ -1,4 +1,5 @@
 // The material of the class `principled` (surfaces/principled.glsl) at one point.
+#include "lib/frames.glsl"
 #include "lib/fresnel.glsl"
 #include "lib/microfacet_anisotropic.glsl"
 #include "lib/sheen.glsl"
@@ -12,6 +13,16 @@
 #else
 #define PrincipledWidth vec2
 #define SURFACES_HAVE_TANGENTS  // lib/scattering.glsl: frames follow the surface's tangent
+#endif
+
+#ifndef ABSENT_principled_clearcoat_normal_scale
+#define COAT_HAS_NORMAL 1
+#define SURFACES_USE_MESH_FRAME  // lib/scattering.glsl
+#ifndef SURFACES_HAVE_TANGENTS
+#define SURFACES_HAVE_TANGENTS
+#endif
+#else
+#define COAT_HAS_NORMAL 0
 #endif
 
 // The material at a point.
@@ -36,6 +47,10 @@ struct PrincipledMaterial {
     Spectrum diffuse_reflected, diffuse_transmitted;  // parts of the diffuse light, as power
     float coat;         // covered part
     float coat_alpha;
+#if COAT_HAS_NORMAL
+    vec3 coat_normal_above;  // local, on the side of +z,
+    vec3 coat_normal;        //   and as it is for light from the side of wo, turned
+#endif
     Spectrum sheen;
     float sheen_most;   // greatest of it
     float sheen_roughness;
@@ -92,20 +107,15 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c) {
 #endif
     m.coat = clamp(r.clearcoat, 0.0, 1.0);
     m.coat_alpha = square(clamp(r.clearcoat_roughness, 0.0, 1.0));
+#if COAT_HAS_NORMAL
+    m.coat_normal_above = m.coat_normal = r.clearcoat_normal;
+#endif
     m.sheen = Spectrum(0), m.sheen_most = 0.0, m.sheen_roughness = r.sheen_roughness;
     if (any(greaterThan(r.sheen_color, vec3(0)))) {
         m.sheen = factor_of_rgb(clamp(r.sheen_color, vec3(0), vec3(1)));
         m.sheen_most = max_component(m.sheen);
     }
     return m;
-}
-
-// The material as it is for light that comes from above (side 1) or below (-1).
-void principled_face(inout PrincipledMaterial m, SurfaceContext c, float side) {
-    m.near = side < 0.0 ? c.ior_below : c.ior_above;
-    m.eta = (side < 0.0 ? c.ior_above : c.ior_below) / m.near;
-    m.diffuse_transmitted = m.sent * min(m.eta * m.eta, 1.0);
-    m.diffuse_reflected = (1.0 - m.through) * m.color + (m.sent - m.diffuse_transmitted);
 }
 
 // Directions in the frame whose x axis is the one of alpha.x, and back.
@@ -120,4 +130,36 @@ vec3 principled_turned_back(PrincipledMaterial m, vec3 w) {
     w.xy = vec2(m.axis.x * w.x - m.axis.y * w.y, m.axis.y * w.x + m.axis.x * w.y);
 #endif
     return w;
+}
+
+// The material as it is for light that comes from above (side 1) or below (-1).
+void principled_face(inout PrincipledMaterial m, SurfaceContext c, float side) {
+    m.near = side < 0.0 ? c.ior_below : c.ior_above;
+    m.eta = (side < 0.0 ? c.ior_above : c.ior_below) / m.near;
+    m.diffuse_transmitted = m.sent * min(m.eta * m.eta, 1.0);
+    m.diffuse_reflected = (1.0 - m.through) * m.color + (m.sent - m.diffuse_transmitted);
+#if COAT_HAS_NORMAL
+    m.coat_normal = principled_turned(m, vec3(side * m.coat_normal_above.xy, m.coat_normal_above.z));
+#endif
+}
+
+// Directions in a frame around the normal of the coat, and back.
+vec3 principled_to_coat(PrincipledMaterial m, vec3 w) {
+#if COAT_HAS_NORMAL
+    w = w * frame_around(m.coat_normal);
+#endif
+    return w;
+}
+vec3 principled_from_coat(PrincipledMaterial m, vec3 w) {
+#if COAT_HAS_NORMAL
+    w = frame_around(m.coat_normal) * w;
+#endif
+    return w;
+}
+float principled_coat_cosine(PrincipledMaterial m, vec3 w) {
+#if COAT_HAS_NORMAL
+    return dot(m.coat_normal, w);
+#else
+    return w.z;
+#endif
 }

@@ -41,20 +41,23 @@ bool in_volume(ScatteringPoint s) {
 #endif
 }
 
-// The shading normal, bent by a normal map where there is one.
-mat3 shading_frame(SurfacePoint p, Material m) {
-    vec3 normal = p.shading_normal;
+// Around the interpolated normal.
+mat3 mesh_frame(SurfacePoint p) {
 #if HAS_VERTEX_ATTRIBUTES || defined(SURFACES_HAVE_TANGENTS)
-    mat3 frame = frame_along(normal, p.tangent.xyz, p.tangent.w);
+    return frame_along(p.shading_normal, p.tangent.xyz, p.tangent.w);
 #else
-    mat3 frame = frame_around(normal);
+    return frame_around(p.shading_normal);
 #endif
+}
+
+// The same, bent by a normal map where there is one.
+mat3 shading_frame(SurfacePoint p, Material m) {
+    mat3 frame = mesh_frame(p);
 #if HAS_NORMAL_MAPS
     if (m.normal_texture.index != NO_RECORD) {
         vec3 t = texture_value(m.normal_texture, p.uv0, p.uv1).xyz * 2.0 - 1.0;
         t.xy *= m.normal_scale;
-        normal = normalize(frame * t);
-        frame = frame_along(normal, frame[0], p.tangent.w);
+        frame = frame_along(normalize(frame * t), frame[0], p.tangent.w);
     }
 #endif
     return frame;
@@ -86,7 +89,10 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool i
     s.medium_above = separates ? m.outside : medium;
 #endif
     s.medium_below = separates ? m.inside : medium;
-    s.context = SurfaceContext(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
+    s.context = surface_context(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
+#if HAS_NORMAL_MAPS && defined(SURFACES_USE_MESH_FRAME)
+    s.context.mesh_frame = transpose(s.frame) * mesh_frame(p);
+#endif
 #if HAS_SCATTERING
     s.phase = NO_RECORD;
     s.extinction = 0.0;
@@ -105,6 +111,9 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool i
 void flatten(inout ScatteringPoint s, vec3 direction) {
     s.frame = frame_around(s.normal);
     s.wo = -direction * s.frame;
+#if HAS_NORMAL_MAPS
+    s.context.mesh_frame = mat3(1);
+#endif
 }
 
 // Of a backward ray. Seen from a side that the shading normal faces away from, the surface is taken as flat.
@@ -189,7 +198,7 @@ ScatteringPoint volume_scattering_point(vec3 position, vec3 direction, uint medi
     s.wo = vec3(0, 0, -1);
     s.surface = s.material = NO_RECORD;
     s.medium_above = s.medium_below = medium;
-    s.context = SurfaceContext(vec2(0), vec2(0), vec4(1), 1.0, 1.0, importance);
+    s.context = surface_context(vec2(0), vec2(0), vec4(1), 1.0, 1.0, importance);
 #if HAS_DISPERSION
     s.disperses = false;
 #endif

@@ -11,8 +11,8 @@
 //   `dielectric` does, tinted by the base color at each transmission. Thin and smooth, light passes straight on.
 //   Rough facets count as smooth where the media match so nearly that refraction is not resolved.
 // - Coat and sheen lie on both sides and scale what is below by min(p(wo), p(wi)), where 1 - p bounds their albedo from
-//   above: KHR_materials_sheen's albedo scaling. What the material emits they leave as it is, and a normal map bends the
-//   coat, too.
+//   above: KHR_materials_sheen's albedo scaling. What the material emits they leave as it is.
+// - A coat may have normals of its own. Its cosines are about those; seen from where they face away there is no coat.
 // - An iridescent film reflects by lib/thin_film.glsl, exactly, on bases whose real index follows from their reflection at
 //   normal incidence in air; so it does under a coat, too.
 // - Where media differ, diffuse transmission keeps radiance over squared index: of what comes from the denser side
@@ -50,6 +50,9 @@ struct Principled {
     TextureRef clearcoat_texture;           //: none data. Red multiplies clearcoat.
     float clearcoat_roughness;              //: 0 in [0, 1]. As roughness.
     TextureRef clearcoat_roughness_texture; //: none data. Green multiplies clearcoat_roughness.
+    float clearcoat_normal_scale;           //: 0. 0 = the coat has the normals of what it covers; else its own map's, scaled.
+    TextureRef clearcoat_normal_texture;    //: none data. Normals of the coat in tangent space, in [0, 1].
+    vec3 clearcoat_normal;                  //: [0, 0, 1]. Of the coat where no texture says it, in tangent space.
     vec3 sheen_color;                       //: [0, 0, 0] in [0, 1]. Linear color of the sheen of fibres.
     TextureRef sheen_color_texture;         //: none. Multiplies sheen_color.
     float sheen_roughness;                  //: 0 in [0, 1]. The rim widens with it; below 0.1 it stays the same.
@@ -72,6 +75,18 @@ Principled principled_resolve(Principled r, SurfaceContext c) {
     r.diffuse_transmission_color *= texture_value(r.diffuse_transmission_color_texture, c.uv0, c.uv1).rgb;
     r.clearcoat *= texture_value(r.clearcoat_texture, c.uv0, c.uv1).r;
     r.clearcoat_roughness *= texture_value(r.clearcoat_roughness_texture, c.uv0, c.uv1).g;
+#ifndef ABSENT_principled_clearcoat_normal_scale
+    if (r.clearcoat_normal_scale != 0.0) {
+        vec3 n = r.clearcoat_normal;
+        if (r.clearcoat_normal_texture.index != NO_RECORD)
+            n = 2.0 * texture_value(r.clearcoat_normal_texture, c.uv0, c.uv1).xyz - 1.0;
+        n.xy *= r.clearcoat_normal_scale;
+#if HAS_NORMAL_MAPS
+        n = c.mesh_frame * n;
+#endif
+        r.clearcoat_normal = n.z > 0.0 ? normalize(n) : vec3(0, 0, 1);
+    }
+#endif
     r.sheen_color *= texture_value(r.sheen_color_texture, c.uv0, c.uv1).rgb;
     r.sheen_roughness *= texture_value(r.sheen_roughness_texture, c.uv0, c.uv1).a;
 #ifndef ABSENT_principled_anisotropy
@@ -108,11 +123,12 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     wo.z *= side;
     PrincipledMaterial m = principled_material(r, c);
     principled_face(m, c, side);
-    PrincipledChoice choice = principled_choice(m, wo.z);
-    if (u.z < choice.straight_probability)
-        return BsdfSample(vec3(-wo.xy, -wo.z * side), choice.straight / choice.straight_probability,
-                          choice.straight_probability, EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT);
+    vec3 incoming = wo;
     wo = principled_turned(m, wo);
+    PrincipledChoice choice = principled_choice(m, wo);
+    if (u.z < choice.straight_probability)
+        return BsdfSample(vec3(-incoming.xy, -incoming.z * side), choice.straight / choice.straight_probability,
+                          choice.straight_probability, EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT);
     // Which part, and where u.z lies within it.
     float rest = u.z - choice.straight_probability;
     bool diffuse = rest < choice.diffuse_probability;
@@ -126,6 +142,9 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     }
     bool is_delta = !diffuse && !sheen && (coat ? m.coat_alpha < SMOOTH_ALPHA : m.smooth_facets);
 
+#if COAT_HAS_NORMAL
+    if (coat) wo = principled_to_coat(m, wo);
+#endif
     vec3 h = vec3(0, 0, 1);
     if (!is_delta) h = ggx_sample_visible(wo, coat ? PrincipledWidth(m.coat_alpha) : m.alpha, u.xy);
     float cos_o = dot(wo, h);
@@ -141,11 +160,14 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     if (!reflects && !m.thin) refract_direction(wo, h, cos_o, m.eta, wi);
     if (diffuse) wi = warp_cosine_hemisphere(u.xy) * vec3(1, 1, through ? -1 : 1);
     if (sheen) wi = warp_sphere(vec2(0.5 * u.x, u.y));
+#if COAT_HAS_NORMAL
+    if (coat) wo = principled_from_coat(m, wo), wi = principled_from_coat(m, wi);
+#endif
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
 
     BsdfSample result = scattered(principled_turned_back(m, wi) * vec3(1, 1, side), reflects ? EVENT_REFLECT : EVENT_TRANSMIT);
     if (is_delta) {
-        result.weight = principled_delta(m, wo, wi, choice, result.pdf);
+        result.weight = principled_delta(m, wo, wi, choice, coat, result.pdf);
         if (!(result.pdf > 0.0)) return no_bsdf_sample();
         result.weight /= result.pdf;
         result.event |= EVENT_DELTA;
@@ -156,7 +178,7 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
 Spectrum principled_transparency(Principled r, SurfaceContext c, vec3 wo) {
     PrincipledMaterial m = principled_material(r, c);
     principled_face(m, c, wo.z < 0.0 ? -1.0 : 1.0);
-    return principled_choice(m, abs(wo.z)).straight;
+    return principled_choice(m, principled_turned(m, vec3(wo.xy, abs(wo.z)))).straight;
 }
 
 bool principled_is_delta(Principled r, SurfaceContext c) {
