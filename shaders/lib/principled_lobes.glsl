@@ -217,19 +217,22 @@ Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float
 }
 
 // The part that is reflected or refracted as at a perfectly smooth surface, and its probability.
-// A coat with normals of its own reflects elsewhere than the facets: `coat` says which of the two is meant.
+// A coat whose normal is another reflects elsewhere than the facets: `coat` says which of the two is meant.
 Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoice choice, bool coat, out float probability) {
     bool reflects = wi.z > 0.0;
     Spectrum value = Spectrum(0);
     probability = 0.0;
-    bool facets = COAT_HAS_NORMAL == 0 || !coat, coat_too = COAT_HAS_NORMAL == 0 || coat;
-    if (m.smooth_facets && facets) {
+    bool apart = false;
+#if COAT_HAS_NORMAL
+    apart = any(notEqual(m.coat_normal.xy, vec2(0)));
+#endif
+    if (m.smooth_facets && !(apart && coat)) {
         float part = principled_reflection_part(choice.reflected, choice.transmitted);
         probability = choice.facet_probability * (reflects ? part : 1.0 - part);
         value = principled_layers_pass(m, wo, vec3(wi.xy, abs(wi.z))) *
                 (reflects ? choice.reflected : choice.transmitted * principled_transmission_scale(m));
     }
-    if (reflects && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA && coat_too) {
+    if (reflects && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA && (coat || !apart)) {
         probability += choice.coat_probability;
         value += principled_coat_fresnel(m, principled_coat_cosine(m, wo)) * principled_coat_correction(m, wo, wi);
     }
