@@ -99,7 +99,7 @@ TEST_CASE("only textures that materials use are kept, with their sampler and ima
           json{{"index", 0},
                {"texCoord", 1},
                {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}}}}}});
-    CHECK(s.materials[0].normal_texture == json{{"index", 0}});
+    CHECK(s.materials[0].normal_texture == json{{"index", 0}, {"scale", 0.5}});
     CHECK(s.warnings.empty());
 }
 
