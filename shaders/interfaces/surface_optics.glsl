@@ -37,16 +37,13 @@ struct SurfaceContext {
 #endif
 };
 
-SurfaceContext surface_context(vec2 uv0, vec2 uv1, vec4 color, float ior_above, float ior_below, bool importance) {
-    SurfaceContext c;
-    c.uv0 = uv0, c.uv1 = uv1, c.color = color;
-    c.ior_above = ior_above, c.ior_below = ior_below;
-    c.importance = importance;
+// By its members, where no map has bent the frame.
 #if HAS_NORMAL_MAPS
-    c.mesh_frame = mat3(1);
+#define unbent_context(uv0, uv1, color, above, below, importance) \
+    SurfaceContext(uv0, uv1, color, above, below, importance, mat3(1))
+#else
+#define unbent_context SurfaceContext
 #endif
-    return c;
-}
 
 const uint EVENT_NONE = 0u;      // absorbed
 const uint EVENT_REFLECT = 1u;

@@ -23,7 +23,7 @@ void main() {
     for (uint k = 0u; k < LOBE_SAMPLES && m.surface != NO_RECORD; ++k) {
         Sampler random = start_sampler(uvec2(0), k, 0u);
         vec2 uv = sample_2d(random);
-        SurfaceContext c = surface_context(uv, uv, vec4(1), 1.0, 1.0, false);
+        SurfaceContext c = unbent_context(uv, uv, vec4(1), 1.0, 1.0, false);
         if ((m.flags & MATERIAL_SEPARATES_MEDIA) != 0u)
             c.ior_above = medium_ior(m.outside, vec3(0)), c.ior_below = medium_ior(m.inside, vec3(0));
 #if HAS_PRIORITIES

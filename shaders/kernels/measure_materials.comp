@@ -19,7 +19,7 @@ void main() {
     uint i = first + gl_GlobalInvocationID.x;
     if (i >= count) return;
     Material m = materials[i];
-    SurfaceContext c = surface_context(vec2(0), vec2(0), vec4(1), 1.0, 1.0, false);
+    SurfaceContext c = unbent_context(vec2(0), vec2(0), vec4(1), 1.0, 1.0, false);
     // What is around a body with a priority may have its index, even if the surface of most of it is opaque.
     if ((m.flags & MATERIAL_SEPARATES_MEDIA) != 0u && m.body == NO_RECORD)
         c.ior_above = medium_ior(m.outside, vec3(0)), c.ior_below = medium_ior(m.inside, vec3(0));

@@ -51,7 +51,10 @@ float principled_coat_fresnel(PrincipledMaterial m, float cos_o) {
 }
 float principled_coat_passes(PrincipledMaterial m, vec3 w) {
     float mu = principled_coat_cosine(m, w);
-    if (!(m.coat > 0.0 && mu > 0.0)) return 1.0;
+    if (!(m.coat > 0.0)) return 1.0;
+#if COAT_HAS_NORMAL
+    if (!(mu > 0.0)) return 1.0;
+#endif
     float average;
     return 1.0 - m.coat * schlick_bound(COAT_F0, 1.0, m.coat_alpha, m.coat_alpha < SMOOTH_ALPHA, mu, average);
 }
@@ -66,13 +69,12 @@ float principled_layers_pass(PrincipledMaterial m, vec3 wo, vec3 wi) {
 
 // The coat's f times the cosine that belongs to the direction of light, about its own normal; what the caller multiplies
 // by is about z, and forward rays meet the surface with that cosine (Veach 1997, section 5.3.2).
-float principled_coat_correction(PrincipledMaterial m, vec3 wo, vec3 wi) {
 #if COAT_HAS_NORMAL
-    if (m.importance)
-        return principled_coat_cosine(m, wo) * wi.z / max(principled_coat_cosine(m, wi) * wo.z, 1e-6);
-#endif
-    return 1.0;
+float principled_coat_correction(PrincipledMaterial m, vec3 wo, vec3 wi) {
+    if (!m.importance) return 1.0;
+    return principled_coat_cosine(m, wo) * wi.z / max(principled_coat_cosine(m, wi) * wo.z, 1e-6);
 }
+#endif
 
 float principled_transmission_scale(PrincipledMaterial m) {
     return m.thin || m.importance ? 1.0 : 1.0 / (m.eta * m.eta);
@@ -147,7 +149,7 @@ struct PrincipledChoice {
 };
 
 PrincipledChoice principled_choice(PrincipledMaterial m, vec3 wo) {
-    float mu_o = wo.z, coat_mu = principled_coat_cosine(m, wo);
+    float mu_o = wo.z;
     Spectrum reflected, transmitted;
     principled_facet(m, mu_o, reflected, transmitted);
     PrincipledChoice choice;
@@ -167,7 +169,10 @@ PrincipledChoice principled_choice(PrincipledMaterial m, vec3 wo) {
     // nothing.
     float facets = m.coverage * max(passes * brightness(reflected + transmitted), 0.02);
     float coat = 0.0, sheen = 0.0;
-    if (m.coat > 0.0 && coat_mu > 0.0) coat = m.coverage * max(principled_coat_fresnel(m, coat_mu), 0.02);
+    if (m.coat > 0.0) coat = m.coverage * max(principled_coat_fresnel(m, principled_coat_cosine(m, wo)), 0.02);
+#if COAT_HAS_NORMAL
+    if (!(principled_coat_cosine(m, wo) > 0.0)) coat = 0.0;
+#endif
     if (m.sheen_most > 0.0)
         sheen = m.coverage * principled_coat_passes(m, wo) * brightness(m.sheen) *
                 max(sheen_albedo_bound(mu_o, m.sheen_roughness), 0.02);
@@ -195,12 +200,18 @@ Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float
         pdf += choice.sheen_probability * 0.5 * INV_PI;
     }
     if (m.coat > 0.0 && m.coat_alpha >= SMOOTH_ALPHA && reflects) {
+#if COAT_HAS_NORMAL
         vec3 o = principled_to_coat(m, wo), i = principled_to_coat(m, wi), h = reflection_normal(o, i);
         if (o.z > 0.0 && i.z > 0.0) {
             value += m.coverage * principled_coat_fresnel(m, dot(o, h)) * ggx_reflection(o, i, h, m.coat_alpha) *
                      principled_coat_correction(m, wo, wi);
             pdf += choice.coat_probability * ggx_reflection_pdf(o, h, m.coat_alpha);
         }
+#else
+        vec3 h = reflection_normal(wo, wi);
+        value += m.coverage * principled_coat_fresnel(m, dot(wo, h)) * ggx_reflection(wo, wi, h, m.coat_alpha);
+        pdf += choice.coat_probability * ggx_reflection_pdf(wo, h, m.coat_alpha);
+#endif
     }
     if (m.smooth_facets) return value;
 
@@ -222,19 +233,25 @@ Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoi
     bool reflects = wi.z > 0.0;
     Spectrum value = Spectrum(0);
     probability = 0.0;
-    bool apart = false;
 #if COAT_HAS_NORMAL
-    apart = any(notEqual(m.coat_normal.xy, vec2(0)));
+    bool apart = any(notEqual(m.coat_normal.xy, vec2(0)));
+    bool facets = m.smooth_facets && !(apart && coat), coat_too = reflects && (coat || !apart);
+#else
+    bool facets = m.smooth_facets, coat_too = reflects;
 #endif
-    if (m.smooth_facets && !(apart && coat)) {
+    if (facets) {
         float part = principled_reflection_part(choice.reflected, choice.transmitted);
         probability = choice.facet_probability * (reflects ? part : 1.0 - part);
         value = principled_layers_pass(m, wo, vec3(wi.xy, abs(wi.z))) *
                 (reflects ? choice.reflected : choice.transmitted * principled_transmission_scale(m));
     }
-    if (reflects && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA && (coat || !apart)) {
+    if (coat_too && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA) {
         probability += choice.coat_probability;
-        value += principled_coat_fresnel(m, principled_coat_cosine(m, wo)) * principled_coat_correction(m, wo, wi);
+        Spectrum reflected = Spectrum(principled_coat_fresnel(m, principled_coat_cosine(m, wo)));
+#if COAT_HAS_NORMAL
+        reflected *= principled_coat_correction(m, wo, wi);
+#endif
+        value += reflected;
     }
     return m.coverage * value;
 }

@@ -144,22 +144,12 @@ void principled_face(inout PrincipledMaterial m, SurfaceContext c, float side) {
 }
 
 // Directions in a frame around the normal of the coat, and back.
-vec3 principled_to_coat(PrincipledMaterial m, vec3 w) {
 #if COAT_HAS_NORMAL
-    w = w * frame_around(m.coat_normal);
-#endif
-    return w;
-}
-vec3 principled_from_coat(PrincipledMaterial m, vec3 w) {
-#if COAT_HAS_NORMAL
-    w = frame_around(m.coat_normal) * w;
-#endif
-    return w;
-}
-float principled_coat_cosine(PrincipledMaterial m, vec3 w) {
-#if COAT_HAS_NORMAL
-    return dot(m.coat_normal, w);
+vec3 principled_to_coat(PrincipledMaterial m, vec3 w) { return w * frame_around(m.coat_normal); }
+vec3 principled_from_coat(PrincipledMaterial m, vec3 w) { return frame_around(m.coat_normal) * w; }
+float principled_coat_cosine(PrincipledMaterial m, vec3 w) { return dot(m.coat_normal, w); }
 #else
-    return w.z;
+#define principled_to_coat(m, w) (w)
+#define principled_from_coat(m, w) (w)
+#define principled_coat_cosine(m, w) (w).z
 #endif
-}

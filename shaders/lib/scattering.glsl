@@ -50,18 +50,15 @@ mat3 mesh_frame(SurfacePoint p) {
 #endif
 }
 
-// The same, bent by a normal map where there is one.
-mat3 shading_frame(SurfacePoint p, Material m) {
-    mat3 frame = mesh_frame(p);
 #if HAS_NORMAL_MAPS
-    if (m.normal_texture.index != NO_RECORD) {
-        vec3 t = texture_value(m.normal_texture, p.uv0, p.uv1).xyz * 2.0 - 1.0;
-        t.xy *= m.normal_scale;
-        frame = frame_along(normalize(frame * t), frame[0], p.tangent.w);
-    }
-#endif
-    return frame;
+// That frame, bent by a normal map where there is one.
+mat3 bent_frame(mat3 frame, SurfacePoint p, Material m) {
+    if (m.normal_texture.index == NO_RECORD) return frame;
+    vec3 t = texture_value(m.normal_texture, p.uv0, p.uv1).xyz * 2.0 - 1.0;
+    t.xy *= m.normal_scale;
+    return frame_along(normalize(frame * t), frame[0], p.tangent.w);
 }
+#endif
 
 // Do the two normals agree on which side of the surface a direction is?
 bool is_consistent(ScatteringPoint s, vec3 direction) {
@@ -79,7 +76,11 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool i
     s.normal = p.geometric_normal;
     s.surface = m.surface;
     s.material = p.material;
-    s.frame = shading_frame(p, m);
+    s.frame = mesh_frame(p);
+#if HAS_NORMAL_MAPS
+    mat3 unbent = s.frame;
+    s.frame = bent_frame(unbent, p, m);
+#endif
     s.shading_normal = s.frame[2];
     s.wo = -direction * s.frame;
     bool separates = (m.flags & MATERIAL_SEPARATES_MEDIA) != 0u;
@@ -89,9 +90,9 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, uint medium, bool i
     s.medium_above = separates ? m.outside : medium;
 #endif
     s.medium_below = separates ? m.inside : medium;
-    s.context = surface_context(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
+    s.context = unbent_context(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
 #if HAS_NORMAL_MAPS && defined(SURFACES_USE_MESH_FRAME)
-    s.context.mesh_frame = transpose(s.frame) * mesh_frame(p);
+    s.context.mesh_frame = transpose(s.frame) * unbent;
 #endif
 #if HAS_SCATTERING
     s.phase = NO_RECORD;
@@ -198,7 +199,7 @@ ScatteringPoint volume_scattering_point(vec3 position, vec3 direction, uint medi
     s.wo = vec3(0, 0, -1);
     s.surface = s.material = NO_RECORD;
     s.medium_above = s.medium_below = medium;
-    s.context = surface_context(vec2(0), vec2(0), vec4(1), 1.0, 1.0, importance);
+    s.context = unbent_context(vec2(0), vec2(0), vec4(1), 1.0, 1.0, importance);
 #if HAS_DISPERSION
     s.disperses = false;
 #endif

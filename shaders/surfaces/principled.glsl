@@ -123,11 +123,10 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     wo.z *= side;
     PrincipledMaterial m = principled_material(r, c);
     principled_face(m, c, side);
-    vec3 incoming = wo;
     wo = principled_turned(m, wo);
     PrincipledChoice choice = principled_choice(m, wo);
     if (u.z < choice.straight_probability)
-        return BsdfSample(vec3(-incoming.xy, -incoming.z * side), choice.straight / choice.straight_probability,
+        return BsdfSample(-principled_turned_back(m, wo) * vec3(1, 1, side), choice.straight / choice.straight_probability,
                           choice.straight_probability, EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT);
     // Which part, and where u.z lies within it.
     float rest = u.z - choice.straight_probability;
@@ -161,7 +160,10 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     if (diffuse) wi = warp_cosine_hemisphere(u.xy) * vec3(1, 1, through ? -1 : 1);
     if (sheen) wi = warp_sphere(vec2(0.5 * u.x, u.y));
 #if COAT_HAS_NORMAL
-    if (coat) wo = principled_from_coat(m, wo), wi = principled_from_coat(m, wi);
+    if (coat) {
+        if (wi.z <= 0.0) return no_bsdf_sample();  // below the coat, if not below the surface
+        wo = principled_from_coat(m, wo), wi = principled_from_coat(m, wi);
+    }
 #endif
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
 

@@ -17,7 +17,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= count) return;
     Pair p = pairs[i];
-    SurfaceContext c = surface_context(vec2(0), vec2(0), vec4(color_r, color_g, color_b, color_a), ior_above, ior_below,
+    SurfaceContext c = unbent_context(vec2(0), vec2(0), vec4(color_r, color_g, color_b, color_a), ior_above, ior_below,
                                       importance != 0u);
     values[i] = surface_pair(surface, c, p.wo, p.wi);
 }

@@ -17,7 +17,7 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= count) return;
     vec3 wo = vec3(wo_x, wo_y, wo_z);
-    SurfaceContext c = surface_context(vec2(0), vec2(0), vec4(color_r, color_g, color_b, color_a), ior_above, ior_below,
+    SurfaceContext c = unbent_context(vec2(0), vec2(0), vec4(color_r, color_g, color_b, color_a), ior_above, ior_below,
                                       importance != 0u);
     // The first numbers are the ends of the range, which a sampler may give.
     vec3 u = vec3(hash_3d(hash_3d(uvec3(i, seed, 1u))) >> 8) / 16777216.0;
