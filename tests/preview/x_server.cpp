@@ -138,6 +138,7 @@ void XServer::hold(const char* name, bool down) {
 
 void XServer::key(const char* name, bool shift) {
     if (shift) hold("Shift_L", true);
+    sleep_milliseconds(2);  // GLFW takes presses of a key within one millisecond for one
     hold(name, true);
     hold(name, false);
     if (shift) hold("Shift_L", false);
