@@ -30,6 +30,9 @@ struct PreviewRequest {
     bool operator==(const PreviewRequest&) const = default;
     // Whether a film of one may go on for the other.
     bool shows_the_same(const PreviewRequest& other) const;
+    // Whether a pass for it is to be broken off once `next` is asked for. Of a view that moves pictures are
+    // coarse enough to come quickly; broken off at every step of the mouse none would ever come.
+    bool is_overtaken_by(const PreviewRequest& next) const;
 };
 
 struct PreviewPicture {

@@ -63,7 +63,7 @@ void PreviewSession::rethrow_failure() const {
 
 bool PreviewSession::is_stale() {
     const std::lock_guard lock(mutex_);
-    return stop_ || !wanted_.shows_the_same(at_work_);
+    return stop_ || at_work_.is_overtaken_by(wanted_);
 }
 
 void PreviewSession::share() {

@@ -1,5 +1,5 @@
-// Which programs a window on a scene needed for its first picture: noted in the folder of compiled kernels, so
-// that the next start has them made while it still reads the scene.
+// Which programs a window on a scene needed for its first picture: noted in the folder of compiled kernels,
+// so that the next start has them made while it still reads the scene.
 #pragma once
 #include <vector>
 

@@ -39,6 +39,12 @@ bool PreviewRequest::shows_the_same(const PreviewRequest& other) const {
            placement == other.placement && algorithm == other.algorithm && seed == other.seed;
 }
 
+bool PreviewRequest::is_overtaken_by(const PreviewRequest& next) const {
+    PreviewRequest moved = next;
+    if (moving) moved.placement = placement;
+    return !shows_the_same(moved);
+}
+
 PreviewWorker::PreviewWorker(const ViewOptions& options, std::function<bool()> interrupt,
                              std::function<void()> changed)
     : options_(options),

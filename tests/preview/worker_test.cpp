@@ -205,3 +205,18 @@ TEST_CASE("a start notes its programs, and the next one of the same scene has th
         if (kernel.name == "trace_paths") CHECK(kernel.from_store);  // the largest, which is begun first
     CHECK(again.picture()->radiance.size() > 0);
 }
+
+TEST_CASE("a step of the mouse breaks off a fine picture, not a coarse one of a view that moves already") {
+    PreviewRequest at_rest, moved;
+    at_rest.width = 64, at_rest.height = 48;
+    moved = at_rest;
+    moved.moving = true;
+    moved.placement = glm::dmat4(2.0);
+    PreviewRequest moved_on = moved, reseeded = moved;
+    moved_on.placement = glm::dmat4(3.0);
+    reseeded.seed = 1;
+    CHECK(at_rest.is_overtaken_by(moved));
+    CHECK(!moved.is_overtaken_by(moved_on));
+    CHECK(moved.is_overtaken_by(reseeded));
+    CHECK(!at_rest.is_overtaken_by(at_rest));
+}

@@ -12,6 +12,7 @@ class Input {
     bool fly_on(double seconds);
     bool take_events();  // has anything happened since the last call?
     bool take_resize();
+    bool drags() const { return drag_ != Drag::none; }
 
   private:
     void on_key(int key, int action, int mods);

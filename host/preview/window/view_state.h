@@ -61,8 +61,10 @@ struct ViewState {
     float content_scale = 1;  // of the display: pixels for one of a display of 96 dpi
     std::string notice;       // shown for some seconds
     double notice_at = -1e9;
-    double pointer_x = 0, pointer_y = 0;        // pixels of the framebuffer
-    double longest_frame = 0, first_shown = 0;  // seconds; the latter since the process started
+    double pointer_x = 0, pointer_y = 0;  // pixels of the framebuffer
+    // Seconds. Of the first picture, since the process started; and the longest, from then on: from one look
+    // at events to the next, and, while the view moves, from frame to frame and from picture to picture.
+    double first_shown = 0, longest_frame = 0, longest_between_frames = 0, longest_between_pictures = 0;
     // As the panel shows them: those of the scene, with what is being edited.
     std::vector<LiveObject> objects;
     std::shared_ptr<const std::vector<LiveObject>> objects_from;

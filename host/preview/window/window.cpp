@@ -20,7 +20,8 @@
 namespace etendue {
 namespace {
 
-constexpr double frame_seconds = 1.0 / 60, moving_seconds = 0.2, idle_seconds = 0.5;
+constexpr double frame_seconds = 1.0 / 60, moving_frame_seconds = 0.04, moving_seconds = 0.2,
+                 idle_seconds = 0.5;
 constexpr int frames_after_events = 3;  // until panels have settled
 constexpr int default_rows = 720;
 
@@ -107,6 +108,8 @@ void write_view_stats(const ViewState& state, uint64_t presenter_bytes) {
     if (state.options.stats.empty()) return;
     const nlohmann::json stats = {{"first_picture_seconds", state.first_shown},
                                   {"longest_frame_seconds", state.longest_frame},
+                                  {"longest_seconds_between_moving_frames", state.longest_between_frames},
+                                  {"longest_seconds_between_moving_pictures", state.longest_between_pictures},
                                   {"passes", state.status.passes},
                                   {"step", state.status.step},
                                   {"device_bytes", state.status.device_bytes},
@@ -139,6 +142,8 @@ int run_view(const ViewOptions& options) {
 
     std::shared_ptr<const PreviewPicture> developed;
     std::optional<ViewTransform> developed_as;
+    bool moved = false;       // the view, in the frame before
+    double last_picture = 0;  // while the view moves; 0 = it stood still
     int frames_left = frames_after_events;
     double last_frame = 0;
     while (!glfwWindowShouldClose(state.window) && !interrupted()) {
@@ -150,7 +155,7 @@ int run_view(const ViewOptions& options) {
         else if (frames_left > 0)
             glfwPollEvents();
         else
-            glfwWaitEventsTimeout(idle_seconds);
+            glfwWaitEventsTimeout(state.request.moving ? moving_frame_seconds : idle_seconds);
         const double start = glfwGetTime();
         const bool news = receive_news(state);
         const bool flies = input.fly_on(start - last_frame);
@@ -160,10 +165,16 @@ int run_view(const ViewOptions& options) {
             continue;
         }
         if (input.take_resize()) presenter.resized();
-        if (input.take_events() || news || flies) frames_left = frames_after_events;
+        // While the view is dragged only pictures are new: frames without one would take time from the
+        // renderer.
+        const bool events = input.take_events();
+        if (input.drags() && !flies)
+            frames_left = news ? 1 : frames_left;
+        else if (events || news || flies)
+            frames_left = frames_after_events;
         // What stands for some time: messages end, movement comes to rest.
-        if (start - state.notice_at < 5 || start - state.moved_at < 2 * moving_seconds)
-            frames_left = std::max(frames_left, 1);
+        const bool stirs = start - state.notice_at < 5 || start - state.moved_at < 2 * moving_seconds;
+        if (stirs && start - last_frame > moving_frame_seconds) frames_left = std::max(frames_left, 1);
         const bool is_first = waits && state.picture;
         if (frames_left == 0 || (start < next && !is_first)) continue;
         --frames_left;
@@ -175,6 +186,14 @@ int run_view(const ViewOptions& options) {
         draw_panels(state);
         ImGui::Render();
         if (state.picture) {
+            if (!state.request.moving)
+                last_picture = 0;
+            else if (state.picture != developed || last_picture == 0) {
+                if (last_picture > 0)
+                    state.longest_between_pictures =
+                        std::max(state.longest_between_pictures, start - last_picture);
+                last_picture = start;
+            }
             const ViewTransform view = view_transform(shown_settings(state));
             if (state.picture != developed || !developed_as || !(view == *developed_as)) {
                 presenter.develop(*state.picture, view);
@@ -184,8 +203,11 @@ int run_view(const ViewOptions& options) {
         }
         if (!presenter.draw(ImGui::GetDrawData())) frames_left = std::max(frames_left, 1);
         if (state.picture && state.first_shown == 0) state.first_shown = seconds_since_start();
-        last_frame = start;
         if (state.first_shown > 0) state.longest_frame = std::max(state.longest_frame, glfwGetTime() - start);
+        if (state.request.moving && moved)
+            state.longest_between_frames = std::max(state.longest_between_frames, start - last_frame);
+        moved = state.request.moving;
+        last_frame = start;
     }
     write_view_stats(state, presenter.device_bytes());
     return int(ExitCode::done);
