@@ -2,8 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "host/cli_values.h"
 #include "host/cli_rays.h"
+#include "host/cli_shared.h"
+#include "host/cli_values.h"
 #include "host/cli_view.h"
 #include "host/error.h"
 
@@ -21,9 +22,9 @@ const char* overview =
 
 // Arguments as text (host/cli_values.h).
 struct RenderArguments {
-    std::optional<std::string> passes, seconds, error, size, spectral_bins;
-    std::string seed = "0", algorithm = "auto", color = "auto", polarization = "auto", schedule = "auto",
-                sampler = "sobol", vertex_memory = "256";
+    std::optional<std::string> passes, seconds, error;
+    std::string polarization = "auto";
+    SharedArguments shared;
 };
 
 std::string quoted_command(int argc, const char* const* argv) {
@@ -53,39 +54,22 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     passes->option_text("N")->excludes(seconds)->excludes(error);
     seconds->option_text("SEC")->excludes(error);
     error->option_text("E");
-    render
-        ->add_option("--size", arguments.size,
-                     "Size in pixels (default: 512 rows, columns by the camera's aspect)")
-        ->option_text("WxH");
-    render->add_option("--receiver", options.receiver, "Camera to render (default: the scene's first)")
-        ->option_text("NAME");
-    render
-        ->add_option("--environment", options.environment,
-                     "Latitude-longitude image for the scene's surroundings")
-        ->option_text("FILE.hdr|exr");
-    render->add_option("--algorithm", arguments.algorithm, "How light is traced (default: auto)")
-        ->option_text("auto|backward|forward|bidirectional");
-    render
-        ->add_option("--vertex-memory", arguments.vertex_memory,
-                     "Memory for vertices of forward paths; a pass that needs more is split (default: 256)")
-        ->option_text("MIB");
-    render->add_option("--color", arguments.color, "What a ray carries (default: auto)")
-        ->option_text("auto|rgb|spectral");
-    render
-        ->add_option("--spectral-bins", arguments.spectral_bins,
-                     "Also write the spectrum, in N equal bins from 360 to 830 nm")
-        ->option_text("N");
+    add_shared(*render, options, arguments.shared,
+               {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
+                {"receiver", "Camera to render (default: the scene's first)"},
+                {"environment", "Latitude-longitude image for the scene's surroundings"},
+                {"algorithm", "How light is traced (default: auto)"},
+                {"vertex-memory",
+                 "Memory for vertices of forward paths; a pass that needs more is split (default: 256)"},
+                {"color", "What a ray carries (default: auto)"},
+                {"spectral-bins", "Also write the spectrum, in N equal bins from 360 to 830 nm"}});
     render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
         ->option_text("auto|off");
-    render
-        ->add_option("--schedule", arguments.schedule,
-                     "Whole paths in one kernel, or a kernel a stage (default: auto)")
-        ->option_text("auto|fused|wavefront|by-class");
-    render->add_option("--sampler", arguments.sampler, "Where random numbers come from (default: sobol)")
-        ->option_text("sobol|independent");
-    render->add_option("--seed", arguments.seed, "Seed of the random numbers (default: 0)")->option_text("N");
-    render->add_option("--device", options.device, "Vulkan device (default: the best; see: etendue devices)")
-        ->option_text("NAME|INDEX");
+    add_shared(*render, options, arguments.shared,
+               {{"schedule", "Whole paths in one kernel, or a kernel a stage (default: auto)"},
+                {"sampler", "Where random numbers come from (default: sobol)"},
+                {"seed", "Seed of the random numbers (default: 0)"},
+                {"device", "Vulkan device (default: the best; see: etendue devices)"}});
     render
         ->add_option("--checkpoint", options.checkpoint, "Keep the state there, to go on from with --resume")
         ->option_text("FILE");
@@ -93,9 +77,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
         ->option_text("FILE");
     render->add_option("--stats", options.stats, "Write counts, timings and the power balance there")
         ->option_text("FILE.json");
-    render
-        ->add_option("--shaders", options.shaders, "Read the shaders from a folder (default: those built in)")
-        ->option_text("DIR");
+    add_shared(*render, options, arguments.shared,
+               {{"shaders", "Read the shaders from a folder (default: those built in)"}});
     render->add_flag("--aovs", options.aovs, "Also write the layers albedo, normal, depth and error");
     render->add_flag("-q,--quiet", options.quiet, "No progress and no warnings");
     return render;
@@ -111,20 +94,16 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
         options.error = parse_positive(*arguments.error, "--error", "");
     else
         options.passes = 64;
-    if (arguments.size) options.size = parse_size(*arguments.size);
-    options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
-    options.algorithm = parse_algorithm(arguments.algorithm, "--algorithm");
-    options.vertex_bytes = parse_mebibytes(arguments.vertex_memory, "--vertex-memory");
-    options.color = parse_color(arguments.color);
-    if (arguments.spectral_bins)
-        options.spectral_bins = uint32_t(parse_count(*arguments.spectral_bins, "--spectral-bins", 1, 470));
+    finish_shared(options, arguments.shared);
+    options.seed = parse_count(arguments.shared.seed, "--seed", 0, UINT32_MAX);
+    options.algorithm = parse_algorithm(arguments.shared.algorithm, "--algorithm");
+    options.vertex_bytes = parse_mebibytes(arguments.shared.vertex_memory, "--vertex-memory");
+    options.schedule = parse_schedule(arguments.shared.schedule);
     if (options.spectral_bins > 0 && options.color == ColorMode::rgb)
         fail_input("--spectral-bins: goes with --color spectral or auto, not with rgb");
-    options.samples = parse_sampler(arguments.sampler);
     options.polarization = parse_choice<PolarizationMode>(
         arguments.polarization, "--polarization",
         {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});
-    options.schedule = parse_schedule(arguments.schedule);
     if (options.output.empty()) options.output = default_output(options.scene);
     if (options.output.extension() != ".exr")
         fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
@@ -149,9 +128,9 @@ CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::optional<std:
 }
 
 struct BenchArguments {
-    std::optional<std::string> seconds, size, reference_relmse;
-    std::string algorithms = "backward,forward,bidirectional,auto", color = "auto", sampler = "sobol",
-                seed = "0", vertex_memory = "256";
+    std::optional<std::string> seconds, reference_relmse;
+    std::string algorithms = "backward,forward,bidirectional,auto";
+    SharedArguments shared;
 };
 
 CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& arguments) {
@@ -172,16 +151,16 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& argume
         ->option_text("A,B,…");
     bench->add_option("--time", arguments.seconds, "Seconds of rendering for each algorithm (default: 30)")
         ->option_text("SEC");
-    bench->add_option("--size", arguments.size, "As for render (default: the reference's)")
-        ->option_text("WxH");
-    bench->add_option("--receiver", options.receiver, "As for render")->option_text("NAME");
-    bench->add_option("--environment", options.environment, "As for render")->option_text("FILE.hdr|exr");
-    bench->add_option("--vertex-memory", arguments.vertex_memory, "As for render")->option_text("MIB");
-    bench->add_option("--color", arguments.color, "As for render")->option_text("auto|rgb|spectral");
-    bench->add_option("--sampler", arguments.sampler, "As for render")->option_text("sobol|independent");
-    bench->add_option("--seed", arguments.seed, "First seed (default: 0)")->option_text("N");
-    bench->add_option("--device", options.device, "As for render")->option_text("NAME|INDEX");
-    bench->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    add_shared(*bench, options, arguments.shared,
+               {{"size", "As for render (default: the reference's)"},
+                {"receiver"},
+                {"environment"},
+                {"vertex-memory"},
+                {"color"},
+                {"sampler"},
+                {"seed", "First seed (default: 0)"},
+                {"device"},
+                {"shaders"}});
     bench->add_flag("-q,--quiet", options.quiet, "No progress and no warnings");
     bench->get_option("SCENE")->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     return bench;
@@ -189,17 +168,15 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& argume
 
 void finish_bench(BenchOptions& options, const BenchArguments& arguments) {
     if (arguments.seconds) options.seconds = parse_positive(*arguments.seconds, "--time", ", in seconds");
-    if (arguments.size) options.size = parse_size(*arguments.size);
+    finish_shared(options, arguments.shared);
     if (arguments.reference_relmse)
         options.reference_relmse = parse_positive(*arguments.reference_relmse, "--reference-relmse", "");
     if (options.reference_relmse && options.reference.empty())
         fail_input("--reference-relmse: goes with --reference");
     if (!options.reference.empty() && options.scenes.size() > 1)
         fail_input("--reference: goes with one scene, not with {}", options.scenes.size());
-    options.seed = parse_count(arguments.seed, "--seed", 0, INT32_MAX);
-    options.vertex_bytes = parse_mebibytes(arguments.vertex_memory, "--vertex-memory");
-    options.color = parse_color(arguments.color);
-    options.samples = parse_sampler(arguments.sampler);
+    options.seed = parse_count(arguments.shared.seed, "--seed", 0, INT32_MAX);
+    options.vertex_bytes = parse_mebibytes(arguments.shared.vertex_memory, "--vertex-memory");
     options.algorithms = parse_algorithms(arguments.algorithms, "--algorithms");
 }
 
@@ -207,11 +184,10 @@ CLI::App* add_inspect(CLI::App& app, InspectOptions& options) {
     CLI::App* inspect =
         app.add_subcommand("inspect", "Objects, classes, features, kernels and memory of a scene");
     inspect->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
-    inspect->add_option("--receiver", options.receiver, "Camera (default: the scene's first)")
-        ->option_text("NAME");
-    inspect->add_option("--environment", options.environment, "As for render")->option_text("FILE.hdr|exr");
-    inspect->add_option("--device", options.device, "As for render")->option_text("NAME|INDEX");
-    inspect->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    SharedArguments none;
+    add_shared(
+        *inspect, options, none,
+        {{"receiver", "Camera (default: the scene's first)"}, {"environment"}, {"device"}, {"shaders"}});
     return inspect;
 }
 

@@ -37,27 +37,25 @@ CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments
     rays->add_option("--objects", arguments.objects,
                      "Keep paths with an event at one of these, by their names")
         ->option_text("NAME,…");
-    rays->add_option("--size", arguments.size, "Of the image, whose pixels the receiver's paths go through")
-        ->option_text("WxH");
-    rays->add_option("--receiver", options.receiver, "As for render")->option_text("NAME");
-    rays->add_option("--environment", options.environment, "As for render")->option_text("FILE.hdr|exr");
-    rays->add_option("--color", arguments.color, "As for render")->option_text("auto|rgb|spectral");
-    rays->add_option("--sampler", arguments.sampler, "As for render")->option_text("sobol|independent");
-    rays->add_option("--seed", arguments.seed, "As for render")->option_text("N");
-    rays->add_option("--device", options.device, "As for render")->option_text("NAME|INDEX");
-    rays->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    add_shared(*rays, options, arguments.shared,
+               {{"size", "Of the image, whose pixels the receiver's paths go through"},
+                {"receiver"},
+                {"environment"},
+                {"color"},
+                {"sampler"},
+                {"seed"},
+                {"device"},
+                {"shaders"}});
     return rays;
 }
 
 void finish_rays(RaysOptions& options, const RaysArguments& arguments) {
-    if (arguments.size) options.size = parse_size(*arguments.size);
+    finish_shared(options, arguments.shared);
     options.paths = uint32_t(parse_count(arguments.paths, "--paths", 1, 1 << 24));
     options.backward = parse_choice<bool>(arguments.from, "--from", {{"lights", false}, {"receiver", true}});
     options.events = names(arguments.events);
     options.objects = names(arguments.objects);
-    options.seed = parse_count(arguments.seed, "--seed", 0, UINT32_MAX);
-    options.color = parse_color(arguments.color);
-    options.samples = parse_sampler(arguments.sampler);
+    options.seed = parse_count(arguments.shared.seed, "--seed", 0, UINT32_MAX);
 }
 
 }  // namespace etendue

@@ -3,18 +3,15 @@
 #include <optional>
 #include <string>
 
-#include "host/commands.h"
-
-namespace CLI {
-class App;
-}
+#include "host/cli_shared.h"
 
 namespace etendue {
 
 // Arguments as text (host/cli_values.h).
 struct RaysArguments {
-    std::optional<std::string> size, events, objects;
-    std::string paths = "1000", from = "lights", seed = "0", color = "auto", sampler = "sobol";
+    std::optional<std::string> events, objects;
+    std::string paths = "1000", from = "lights";
+    SharedArguments shared;
 };
 
 CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments);

@@ -3,19 +3,15 @@
 #include <optional>
 #include <string>
 
-#include "host/commands.h"
-
-namespace CLI {
-class App;
-}
+#include "host/cli_shared.h"
 
 namespace etendue {
 
 // Arguments as text (host/cli_values.h).
 struct ViewArguments {
-    std::optional<std::string> passes, size, exposure, spectral_bins;
-    std::string seed = "0", algorithm = "auto", color = "auto", schedule = "auto", sampler = "sobol",
-                vertex_memory = "256", curve = "srgb";
+    std::optional<std::string> passes, exposure;
+    std::string curve = "srgb";
+    SharedArguments shared;
 };
 
 CLI::App* add_view(CLI::App& app, ViewOptions& options, ViewArguments& arguments);
