@@ -213,7 +213,10 @@ void check(VkResult result, const char* call) {
         case VK_ERROR_OUT_OF_DEVICE_MEMORY:
             fail_device("out of device memory ({})", call);
         case VK_ERROR_DEVICE_LOST:
-            fail_device("the device was lost ({})", call);
+            throw DeviceLost(ExitCode::device_failed, fmt::format("the device was lost ({})", call));
+        case VK_ERROR_SURFACE_LOST_KHR:
+            throw DeviceLost(ExitCode::device_failed,
+                             fmt::format("the window's surface was lost ({})", call));
         default:
             fail_device("{} failed with VkResult {}", call, int(result));
     }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "host/error.h"
+
 namespace etendue {
 
 class ProgramStore;
@@ -66,7 +68,13 @@ std::vector<DeviceDescription> list_devices();
 // Index into list_devices() of the one that create_device chooses by default; -1 where none is usable.
 int default_device(const std::vector<DeviceDescription>& devices);
 
-// Fails with exit code 3 and one line that names the call; out-of-memory results say so.
+// The device, or the surface that it shows pictures on: all that was made for it is gone, another may do.
+struct DeviceLost : Error {
+    using Error::Error;
+};
+
+// Fails with exit code 3 and one line that names the call; out-of-memory results say so. DeviceLost where the
+// device or its surface was lost.
 void check(VkResult result, const char* call);
 
 void set_debug_name(const Device& device, VkObjectType type, uint64_t handle, const std::string& name);

@@ -76,6 +76,7 @@ struct PreviewStatus {
     std::optional<RelativeError> error;
     KernelTimings timings;
     uint64_t device_bytes = 0;
+    uint32_t devices_lost = 0;  // and replaced
 };
 
 // What a task works on, between two slices of work.

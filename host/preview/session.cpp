@@ -100,25 +100,35 @@ std::function<void(PreviewScene&)> PreviewSession::next_task() {
     return task;
 }
 
+// A slice; false: nothing is left to do.
+bool PreviewSession::work() {
+    while (const auto task = next_task()) worker_.run_task(task);
+    if (std::chrono::steady_clock::now() >= next_watch_) {
+        worker_.reload_changed();
+        next_watch_ = std::chrono::steady_clock::now() + watch_interval;
+    }
+    return worker_.work(at_work_);
+}
+
 void PreviewSession::loop() {
     bool busy = true;
-    auto next_watch = std::chrono::steady_clock::now() + watch_interval;
+    next_watch_ = std::chrono::steady_clock::now() + watch_interval;
     while (true) {
         {
             std::unique_lock lock(mutex_);
             const auto has_news = [&] {
                 return stop_ || (worker_.takes_tasks() && !tasks_.empty()) || wanted_ != at_work_;
             };
-            if (!busy) wake_.wait_until(lock, next_watch, has_news);
+            if (!busy) wake_.wait_until(lock, next_watch_, has_news);
             if (stop_) return;
             at_work_ = wanted_;
         }
-        while (const auto task = next_task()) worker_.run_task(task);
-        if (std::chrono::steady_clock::now() >= next_watch) {
-            worker_.reload_changed();
-            next_watch = std::chrono::steady_clock::now() + watch_interval;
+        try {
+            busy = work();
+        } catch (const DeviceLost&) {
+            if (!worker_.replace_device()) throw;
+            busy = true;
         }
-        busy = worker_.work(at_work_);
     }
 }
 

@@ -1,6 +1,7 @@
 // A worker on a thread of its own, which owns device, scene and renderer: nothing that a window does waits
 // for it but the destructor.
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -28,12 +29,14 @@ class PreviewSession {
   private:
     void run();
     void loop();
+    bool work();
     std::function<void(PreviewScene&)> next_task();
     void share();
     bool is_stale();
     const std::function<void()> notify_;
     PreviewWorker worker_;  // the thread's own
     PreviewRequest at_work_;
+    std::chrono::steady_clock::time_point next_watch_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     // Behind the mutex:

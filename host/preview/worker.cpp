@@ -103,6 +103,25 @@ void PreviewWorker::describe_scene() {
     status_.materials = scene.materials;
 }
 
+bool PreviewWorker::replace_device() {
+    if (!std::exchange(has_drawn_, false)) return false;
+    say("the device was lost; the scene is loaded on another one");
+    current_.reset();
+    renderer_.reset();
+    scene_.reset();
+    live_->move_to([&]() -> Device& {
+        device_.reset();
+        device_ = create_device({options_.device, false});
+        return *device_;
+    });
+    scene_ = live_->scene();
+    status_.device = device_->description.name;
+    ++status_.devices_lost;
+    describe_scene();
+    say("");
+    return true;
+}
+
 // Puts the next scene in the place of the one there is; where its renderer cannot be made, all stays.
 void PreviewWorker::take_over(const std::shared_ptr<Scene>& next) {
     if (next != scene_) {
@@ -162,6 +181,7 @@ bool PreviewWorker::work(const PreviewRequest& request) {
     publish(request);
     update_status(false);
     if (!std::exchange(has_started_, true)) start_programs_.write(scene_->kernels);
+    has_drawn_ = true;
     return true;
 }
 

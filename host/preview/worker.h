@@ -31,6 +31,10 @@ class PreviewWorker {
     // was there stays.
     bool reload_changed();
 
+    // After DeviceLost: another device with the same scene, as it was edited, on which the film begins anew.
+    // False: the last one was lost before it made a picture; another one will not do better.
+    bool replace_device();
+
     const PreviewStatus& status() const { return status_; }
     const std::shared_ptr<const PreviewPicture>& picture() const { return picture_; }
 
@@ -64,6 +68,7 @@ class PreviewWorker {
     std::shared_ptr<Scene> scene_;  // the renderer's
     std::unique_ptr<Renderer> renderer_;
     WatchedFiles watched_;
+    bool has_drawn_ = false;  // the device at hand, a picture
     PreviewStatus status_;
     std::shared_ptr<const PreviewPicture> picture_;
     std::optional<PreviewRequest> current_;       // what the film shows

@@ -123,15 +123,15 @@ Interface interface_of(Part part) {
 }
 
 LiveScene::LiveScene(Device& device, std::filesystem::path file, SceneOptions options)
-    : device_(device), file_(std::move(file)), options_(std::move(options)) {
+    : device_(&device), file_(std::move(file)), options_(std::move(options)) {
     compile(import_gltf(file_), std::make_shared<SceneMemory>());
     accept();
 }
 
 std::shared_ptr<Scene> LiveScene::compile(SceneDescription description, std::shared_ptr<SceneMemory> memory) {
     candidate_.reset();
-    auto next = std::make_shared<Scene>(compile_scene(device_, description, options_, *memory));
-    if (scene_ && same_receivers(description, description_)) keep_receivers(*next);
+    auto next = std::make_shared<Scene>(compile_scene(*device_, description, options_, *memory));
+    if (scene_ && same_receivers(description, description_)) keep_receivers(*next, scene_->receivers);
     candidate_ = Candidate{next, {}, std::move(description), std::move(memory)};
     return next;
 }
@@ -142,24 +142,34 @@ std::shared_ptr<Scene> LiveScene::compile(SceneObjects objects) {
     std::swap(current, objects);
     std::shared_ptr<Scene> next;
     try {
-        next = std::make_shared<Scene>(compile_scene(device_, description_, options_, *memory_));
+        next = std::make_shared<Scene>(compile_scene(*device_, description_, options_, *memory_));
     } catch (...) {
         std::swap(current, objects);
         throw;
     }
     std::swap(current, objects);
-    keep_receivers(*next);
+    keep_receivers(*next, scene_->receivers);
     candidate_ = Candidate{next, std::move(objects), {}, memory_};
     return next;
 }
 
 // Where they were moved to.
-void LiveScene::keep_receivers(Scene& next) const {
-    for (size_t i = 0; i < std::min(scene_->receivers.size(), next.receivers.size()); ++i) {
-        const Receiver &now = scene_->receivers[i], &fresh = next.receivers[i];
+void LiveScene::keep_receivers(Scene& next, const std::vector<Receiver>& receivers) {
+    for (size_t i = 0; i < std::min(receivers.size(), next.receivers.size()); ++i) {
+        const Receiver &now = receivers[i], &fresh = next.receivers[i];
         if (now.world_from_local != fresh.world_from_local || now.parameters != fresh.parameters)
             move_receiver(next, i, now.world_from_local, now.parameters);
     }
+}
+
+void LiveScene::move_to(const std::function<Device&()>& next_device) {
+    const std::vector<Receiver> receivers = scene_->receivers;
+    candidate_.reset();
+    scene_.reset();
+    memory_ = std::make_shared<SceneMemory>();
+    device_ = &next_device();
+    scene_ = std::make_shared<Scene>(compile_scene(*device_, description_, options_, *memory_));
+    keep_receivers(*scene_, receivers);
 }
 
 void LiveScene::accept() {

@@ -4,6 +4,7 @@
 // renderers stand, accept() puts it in the place of the first. Until then, and where anything is wrong, all
 // stays as it was: errors are the lines that the same values in a scene file would give.
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,6 +51,10 @@ class LiveScene {
     // moved stay where they are unless the file has changed them.
     std::shared_ptr<Scene> reload();
 
+    // After the device was lost: frees all that lies on it, asks for another, and compiles the same scene
+    // there, with its edits and its receivers where they are. Nobody else may hold the scene.
+    void move_to(const std::function<Device&()>& next_device);
+
     // What the last change has made becomes the scene. Changes of receivers need none: they are made at once
     // and give the same scene.
     void accept();
@@ -63,8 +68,8 @@ class LiveScene {
     };
     std::shared_ptr<Scene> compile(SceneObjects objects);
     std::shared_ptr<Scene> compile(SceneDescription description, std::shared_ptr<SceneMemory> memory);
-    void keep_receivers(Scene& next) const;
-    Device& device_;
+    static void keep_receivers(Scene& next, const std::vector<Receiver>& receivers);
+    Device* device_;
     std::filesystem::path file_;
     SceneOptions options_;
     SceneDescription description_;

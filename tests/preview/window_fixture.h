@@ -14,8 +14,10 @@ namespace etendue {
 class ViewedScene {
   public:
     // Starts the program; `words` follow `view SCENE`. The scene's text is written into the program's folder.
-    ViewedScene(const std::string& scene, std::vector<std::string> words, int dots_per_inch = 96)
+    ViewedScene(const std::string& scene, std::vector<std::string> words, int dots_per_inch = 96,
+                const std::map<std::string, std::string>& environment = {})
         : x(dots_per_inch) {
+        program.environment = environment;
         program.environment["DISPLAY"] = x.name();
         std::ofstream(program.folder / "scene.gltf") << scene;
         words.insert(words.begin(), {"view", "scene.gltf", "--stats", "stats.json"});
@@ -29,6 +31,10 @@ class ViewedScene {
     // Closes the window by its key; what the program said.
     Run close() {
         x.key("Escape");
+        return wait();
+    }
+    // Until the program has ended.
+    Run wait() {
         for (int i = 0; i < 600; ++i, std::this_thread::sleep_for(std::chrono::milliseconds(50))) {
             siginfo_t info{};
             if (waitid(P_PID, id_t(process), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&

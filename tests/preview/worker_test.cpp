@@ -128,6 +128,25 @@ TEST_CASE("an edit shows in the picture; one that is refused becomes a message, 
     CHECK(!viewed.worker->status().is_error);
 }
 
+TEST_CASE("on another device the scene is as it was edited, and the camera where it stood") {
+    Viewed viewed;
+    viewed.rest();
+    const LiveObject object = viewed.object(LiveObject::Part::surface, 1);
+    viewed.worker->run_task([&](PreviewScene& scene) {
+        scene.next = scene.live.set_parameter(object, "reflectance", {0.1, 0.2, 0.6});
+    });
+    viewed.request.receiver = 1;
+    viewed.request.placement = viewed.worker->status().receivers[1].placement;
+    (*viewed.request.placement)[3].y += 0.25;
+    const std::vector<glm::vec3> before = viewed.rest().radiance;
+    CHECK(viewed.worker->replace_device());
+    CHECK(viewed.worker->status().devices_lost == 1);
+    CHECK(!viewed.worker->replace_device());  // it has made no picture yet
+    CHECK(viewed.rest().radiance == before);
+    CHECK(viewed.worker->replace_device());
+    CHECK(viewed.rest().radiance == before);
+}
+
 TEST_CASE("layers: errors are known after some passes, normals point to the camera, depth is darker afar") {
     Viewed viewed;
     viewed.request.wants_errors = true;

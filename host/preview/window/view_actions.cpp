@@ -137,6 +137,23 @@ void save_image(ViewState& state) {
     });
 }
 
+std::string rescue_picture(const ViewState& state) {
+    if (!state.picture) return "";
+    const PreviewPicture& picture = *state.picture;
+    Image image;
+    image.width = picture.width, image.height = picture.height;
+    add_channels(image, {"R", "G", "B"}, {&picture.radiance.front().x, 3 * picture.radiance.size()}, 3);
+    image.attributes["scene"] = state.options.scene.string();
+    image.attributes["passes"] = double(picture.passes);
+    try {
+        const std::filesystem::path path = free_name(state.options.scene);
+        write_exr(path, image);
+        return path.string();
+    } catch (const Error&) {
+        return "";
+    }
+}
+
 // One edit is at work at a time, and of those that wait the last counts: a slider may be quicker than the
 // scene.
 void edit_object(ViewState& state, const ObjectEdit& edit) {

@@ -96,6 +96,9 @@ void read_pixel_at_pointer(ViewState& state);
 void trace_paths(ViewState& state);  // for the ray viewer
 void copy_camera(ViewState& state);  // to the clipboard, as glTF
 void save_image(ViewState& state);   // EXR and (sRGB, with the exposure) PNG, in the current folder
+// Writes the last picture as EXR into the current folder, without the renderer; its name, or nothing where
+// there is none or it cannot be written.
+std::string rescue_picture(const ViewState& state);
 // Takes over what the session and its tasks have brought since the last frame.
 // True: there was any.
 bool receive_news(ViewState& state);

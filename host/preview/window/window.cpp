@@ -92,6 +92,52 @@ GLFWwindow* open_window(const ViewOptions& options) {
     return window;
 }
 
+// The picture and the panels on the screen, by another presenter whenever the device or the surface is lost.
+class Screen {
+  public:
+    explicit Screen(ViewState& state) : state_(state) { open(); }
+    void resized() { presenter_->resized(); }
+    uint64_t device_bytes() const { return presenter_->device_bytes(); }
+    uint32_t devices_lost() const { return devices_lost_; }
+    const std::shared_ptr<const PreviewPicture>& developed() const { return developed_; }
+    // False: the frame could not be shown; it is to be drawn again.
+    bool draw() {
+        try {
+            develop();
+            const bool drawn = presenter_->draw(ImGui::GetDrawData());
+            has_drawn_ |= drawn;
+            return drawn;
+        } catch (const DeviceLost&) {
+            if (!has_drawn_) throw;  // nor will another one
+            ++devices_lost_;
+            open();
+            return false;
+        }
+    }
+
+  private:
+    void open() {
+        presenter_.reset();
+        presenter_ = std::make_unique<Presenter>(state_.window, state_.options.shaders);
+        developed_.reset();
+        has_drawn_ = false;
+    }
+    void develop() {
+        if (!state_.picture) return;
+        const ViewTransform view = view_transform(shown_settings(state_));
+        if (state_.picture == developed_ && view == developed_as_) return;
+        presenter_->develop(*state_.picture, view);
+        developed_ = state_.picture;
+        developed_as_ = view;
+    }
+    ViewState& state_;
+    std::unique_ptr<Presenter> presenter_;
+    std::shared_ptr<const PreviewPicture> developed_;
+    ViewTransform developed_as_{};
+    bool has_drawn_ = false;  // the presenter at hand, a frame
+    uint32_t devices_lost_ = 0;
+};
+
 // What the window shows when nothing has been asked for yet, and what the session is told once a frame.
 void tell_session(ViewState& state) {
     int width = 0, height = 0;
@@ -104,7 +150,7 @@ void tell_session(ViewState& state) {
     state.session.request(state.request);
 }
 
-void write_view_stats(const ViewState& state, uint64_t presenter_bytes) {
+void write_view_stats(const ViewState& state, const Screen& screen) {
     if (state.options.stats.empty()) return;
     const nlohmann::json stats = {{"first_picture_seconds", state.first_shown},
                                   {"longest_frame_seconds", state.longest_frame},
@@ -113,35 +159,15 @@ void write_view_stats(const ViewState& state, uint64_t presenter_bytes) {
                                   {"passes", state.status.passes},
                                   {"step", state.status.step},
                                   {"device_bytes", state.status.device_bytes},
-                                  {"window_device_bytes", presenter_bytes}};
+                                  {"window_device_bytes", screen.device_bytes()},
+                                  {"devices_lost", state.status.devices_lost},
+                                  {"window_devices_lost", screen.devices_lost()}};
     const std::string text = stats.dump(2) + "\n";
     write_atomically(state.options.stats, std::as_bytes(std::span(text)));
 }
 
-}  // namespace
-
-int run_view(const ViewOptions& options) {
-    Bell bell;
-    PreviewSession session(options, [&] { bell.ring(); });  // opens the scene while the window opens
-    const Glfw glfw;
-    const BellOn bell_on(bell);
-    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window(open_window(options), glfwDestroyWindow);
-    ViewState state(options, session);
-    state.window = window.get();
-    state.view.curve = options.curve;
-    state.view.exposure = options.exposure.value_or(0);
-    state.metered = options.exposure.has_value();
-    state.request.algorithm = options.algorithm;
-    state.request.seed = uint32_t(options.seed ^ (options.seed >> 32));
-    glfwGetWindowContentScale(state.window, &state.content_scale, nullptr);
+void show_until_closed(ViewState& state, Input& input, Screen& screen) {
     const float first_scale = state.content_scale;
-    tell_session(state);
-    Input input(state);
-    const Panels panels(state.window, state.content_scale);
-    Presenter presenter(state.window, options.shaders);
-
-    std::shared_ptr<const PreviewPicture> developed;
-    std::optional<ViewTransform> developed_as;
     bool moved = false;       // the view, in the frame before
     double last_picture = 0;  // while the view moves; 0 = it stood still
     int frames_left = frames_after_events;
@@ -164,7 +190,7 @@ int run_view(const ViewOptions& options) {
             frames_left = 0;
             continue;
         }
-        if (input.take_resize()) presenter.resized();
+        if (input.take_resize()) screen.resized();
         // While the view is dragged only pictures are new: frames without one would take time from the
         // renderer.
         const bool events = input.take_events();
@@ -188,20 +214,14 @@ int run_view(const ViewOptions& options) {
         if (state.picture) {
             if (!state.request.moving)
                 last_picture = 0;
-            else if (state.picture != developed || last_picture == 0) {
+            else if (state.picture != screen.developed() || last_picture == 0) {
                 if (last_picture > 0)
                     state.longest_between_pictures =
                         std::max(state.longest_between_pictures, start - last_picture);
                 last_picture = start;
             }
-            const ViewTransform view = view_transform(shown_settings(state));
-            if (state.picture != developed || !developed_as || !(view == *developed_as)) {
-                presenter.develop(*state.picture, view);
-                developed = state.picture;
-                developed_as = view;
-            }
         }
-        if (!presenter.draw(ImGui::GetDrawData())) frames_left = std::max(frames_left, 1);
+        if (!screen.draw()) frames_left = std::max(frames_left, 1);
         if (state.picture && state.first_shown == 0) state.first_shown = seconds_since_start();
         if (state.first_shown > 0) state.longest_frame = std::max(state.longest_frame, glfwGetTime() - start);
         if (state.request.moving && moved)
@@ -209,7 +229,37 @@ int run_view(const ViewOptions& options) {
         moved = state.request.moving;
         last_frame = start;
     }
-    write_view_stats(state, presenter.device_bytes());
+}
+
+}  // namespace
+
+int run_view(const ViewOptions& options) {
+    Bell bell;
+    PreviewSession session(options, [&] { bell.ring(); });  // opens the scene while the window opens
+    const Glfw glfw;
+    const BellOn bell_on(bell);
+    std::unique_ptr<GLFWwindow, void (*)(GLFWwindow*)> window(open_window(options), glfwDestroyWindow);
+    ViewState state(options, session);
+    state.window = window.get();
+    state.view.curve = options.curve;
+    state.view.exposure = options.exposure.value_or(0);
+    state.metered = options.exposure.has_value();
+    state.request.algorithm = options.algorithm;
+    state.request.seed = uint32_t(options.seed ^ (options.seed >> 32));
+    glfwGetWindowContentScale(state.window, &state.content_scale, nullptr);
+    tell_session(state);
+    Input input(state);
+    const Panels panels(state.window, state.content_scale);
+    try {
+        Screen screen(state);
+        show_until_closed(state, input, screen);
+        write_view_stats(state, screen);
+    } catch (const Error& error) {
+        if (error.code != ExitCode::device_failed) throw;
+        const std::string kept = rescue_picture(state);
+        if (kept.empty()) throw;
+        fail_device("{}; the last picture is in {}", error.what(), kept);
+    }
     return int(ExitCode::done);
 }
 
