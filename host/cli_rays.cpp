@@ -35,7 +35,9 @@ CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments
             "Keep paths with one of: emitted, reflected, refracted, straight, scattered, absorbed, escaped")
         ->option_text("E,…");
     rays->add_option("--objects", arguments.objects,
-                     "Keep paths with an event at one of these, by their names")
+                     "Keep paths with an event at one of these: shapes, nodes, materials, media, lights")
+        ->option_text("NAME,…");
+    rays->add_option("--without", arguments.without, "Leave out paths that come to one of these")
         ->option_text("NAME,…");
     add_shared(*rays, options, arguments.shared,
                {{"size", "Of the image, whose pixels the receiver's paths go through"},
@@ -55,6 +57,7 @@ void finish_rays(RaysOptions& options, const RaysArguments& arguments) {
     options.backward = parse_choice<bool>(arguments.from, "--from", {{"lights", false}, {"receiver", true}});
     options.events = names(arguments.events);
     options.objects = names(arguments.objects);
+    options.without = names(arguments.without);
     options.seed = parse_count(arguments.shared.seed, "--seed", 0, UINT32_MAX);
 }
 

@@ -9,7 +9,7 @@ namespace etendue {
 
 // Arguments as text (host/cli_values.h).
 struct RaysArguments {
-    std::optional<std::string> events, objects;
+    std::optional<std::string> events, objects, without;
     std::string paths = "1000", from = "lights";
     SharedArguments shared;
 };

@@ -80,6 +80,7 @@ struct RaysOptions : SceneChoice {
     uint32_t paths = 1000;
     bool backward = false;  // from the receiver, through pixels spread over its image; else from the lights
     std::vector<std::string> events, objects;  // only paths with such an event there; empty = any
+    std::vector<std::string> without;          // no paths that come to one of these
     uint64_t seed = 0;
 };
 

@@ -15,6 +15,7 @@ constexpr uint32_t most_passes = 64;  // over which wavelengths are spread
 PathFilter filter_of(const RaysOptions& options) {
     PathFilter filter;
     filter.objects = {options.objects.begin(), options.objects.end()};
+    filter.without = {options.without.begin(), options.without.end()};
     for (const std::string& name : options.events) {
         PathEvent event = PathEvent::emitted;
         while (name != event_name(event)) {

@@ -84,9 +84,8 @@ CameraPose fly(const CameraPose& pose, double right, double up, double forward) 
 
 CameraPose focus(const CameraPose& pose, const glm::dvec3& point) { return {pose.placement, point}; }
 
-std::optional<std::array<glm::dvec2, 2>> seen_line(const CameraPose& pose, const CameraLens& lens,
-                                                   double aspect_ratio, const glm::dvec3& from,
-                                                   const glm::dvec3& to) {
+std::optional<SeenLine> seen_line(const CameraPose& pose, const CameraLens& lens, double aspect_ratio,
+                                  const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dmat4 local_from_world = glm::inverse(pose.placement);
     std::array<glm::dvec3, 2> ends = {glm::dvec3(local_from_world * glm::dvec4(from, 1)),
                                       glm::dvec3(local_from_world * glm::dvec4(to, 1))};
@@ -99,10 +98,11 @@ std::optional<std::array<glm::dvec2, 2>> seen_line(const CameraPose& pose, const
             const double t = (nearest + ends[i].z) / (ends[i].z - other.z);
             ends[i] += t * (other - ends[i]);
         }
-    std::array<glm::dvec2, 2> seen;
+    SeenLine seen;
+    seen.local = ends;
     for (int i = 0; i < 2; ++i) {
         const glm::dvec2 at = glm::dvec2(ends[i]) / (lens.parallel ? lens.height : lens.height * -ends[i].z);
-        seen[i] = {0.5 * aspect_ratio + at.x, 0.5 - at.y};
+        seen.at[i] = {0.5 * aspect_ratio + at.x, 0.5 - at.y};
     }
     return seen;
 }

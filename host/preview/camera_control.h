@@ -36,11 +36,14 @@ CameraPose fly(const CameraPose& pose, double right, double up, double forward);
 // Turns around another point from now on; nothing moves.
 CameraPose focus(const CameraPose& pose, const glm::dvec3& point);
 
-// Where a line between two points is seen: in heights of the view from its top left corner, x to the right, y
-// down. None where all of it lies behind the camera.
-std::optional<std::array<glm::dvec2, 2>> seen_line(const CameraPose& pose, const CameraLens& lens,
-                                                   double aspect_ratio, const glm::dvec3& from,
-                                                   const glm::dvec3& to);
+// A line between two points, cut where it comes too near to the camera.
+struct SeenLine {
+    std::array<glm::dvec2, 2> at;     // heights of the view from its top left corner, x to the right, y down
+    std::array<glm::dvec3, 2> local;  // the same in the camera's coordinates, which looks along -z
+};
+// None where all of it lies behind the camera.
+std::optional<SeenLine> seen_line(const CameraPose& pose, const CameraLens& lens, double aspect_ratio,
+                                  const glm::dvec3& from, const glm::dvec3& to);
 
 double pivot_distance(const CameraPose& pose);  // along the axis; > 0
 

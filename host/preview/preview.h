@@ -22,7 +22,7 @@ struct PreviewRequest {
     std::optional<glm::dmat4> placement;  // none = as the scene has it
     bool moving = false;                  // quick pictures are better than fine ones
     bool paused = false;
-    bool wants_errors = false;
+    bool wants_errors = false, wants_depth = false;
     Algorithm algorithm = Algorithm::automatic;
     uint32_t seed = 0;
     Layer layer = Layer::radiance;
@@ -42,6 +42,7 @@ struct PreviewPicture {
     Layer layer = Layer::radiance;
     std::vector<glm::vec3> shown;   // of another layer: relative error, or colours to show as they are
     std::vector<glm::vec3> errors;  // of the radiance, in its unit; empty until they were asked for
+    std::vector<float> depth;       // m along the ray, 0 = nothing is there; empty until it was asked for
     uint64_t passes = 0;
     PreviewRequest request;  // that it answers
 };
@@ -64,6 +65,7 @@ struct PreviewStatus {
     std::vector<KernelReport> kernels;
     std::shared_ptr<const std::vector<LiveObject>> objects;  // null = none yet
     std::map<Interface, std::vector<std::string>> class_names;
+    std::vector<std::string> placed_names;  // of shapes and nodes, in order, the first thousand
 
     std::string device, message;  // message: an error, or what takes long; empty = none
     bool is_error = false;

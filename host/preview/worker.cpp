@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "host/commands/open_scene.h"
@@ -17,6 +18,7 @@ constexpr double moving_seconds = 0.05;   // that a pass may take while the view
 constexpr double resting_seconds = 0.25;  // that the first pass of a picture at rest may take
 constexpr double slice_seconds = 0.1;     // of passes between two pictures
 constexpr uint32_t coarsest_step = 16;
+constexpr size_t most_names = 1000;
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -92,6 +94,10 @@ void PreviewWorker::describe_scene() {
             status.placement = receiver.world_from_local;
     }
     status_.objects = std::make_shared<const std::vector<LiveObject>>(live_->objects());
+    const std::set<std::string> names(scene.placed_names.begin(), scene.placed_names.end());
+    status_.placed_names.clear();
+    for (const std::string& name : names)
+        if (!name.empty() && status_.placed_names.size() < most_names) status_.placed_names.push_back(name);
     status_.class_names.clear();
     for (const InterfaceInfo& interface : all_interfaces())
         for (const ClassInfo& info : scene.registry->classes(interface.interface))
@@ -151,8 +157,9 @@ bool PreviewWorker::work(const PreviewRequest& request) {
     } else if (!request.moving && step_ > 1 && renderer_->passes() > 0 && !request.paused) {
         restart(std::min(step_ / 2, step_for(resting_seconds, request)));  // finer
     }
-    const bool other_layer =
-        current_->layer != request.layer || current_->wants_errors != request.wants_errors;
+    const bool other_layer = current_->layer != request.layer ||
+                             current_->wants_errors != request.wants_errors ||
+                             current_->wants_depth != request.wants_depth;
     current_ = request;
     const uint64_t all = options_.passes.value_or(UINT64_MAX);
     const bool at_rest =

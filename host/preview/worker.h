@@ -53,6 +53,7 @@ class PreviewWorker {
     bool choose_algorithm_at_rest(const PreviewRequest& request);
     void publish(const PreviewRequest& request);
     void look_at_errors(const PreviewRequest& request);
+    const Image& aovs(const PreviewPicture& picture);
     std::vector<glm::vec3> develop_layer(Layer layer, const PreviewPicture& picture);
     void update_status(bool at_rest);
     void say(const std::string& message, bool is_error = false);

@@ -46,21 +46,26 @@ void PreviewWorker::look_at_errors(const PreviewRequest& request) {
     if (wanted) errors_ = read_colors(renderer_->develop(true), {"error.R", "error.G", "error.B"});
 }
 
-// Colours to show as they are; relative errors of the error layer.
-std::vector<glm::vec3> PreviewWorker::develop_layer(Layer layer, const PreviewPicture& picture) {
-    if (layer == Layer::error) return relative_errors(picture.radiance, errors_);
+// Of the film at hand, for a picture of its size.
+const Image& PreviewWorker::aovs(const PreviewPicture& picture) {
     if (aovs_.channels.empty()) {
         aovs_.width = picture.width, aovs_.height = picture.height;
         renderer_->add_aovs(aovs_, aov_samples);
     }
-    if (layer == Layer::albedo) return read_colors(aovs_, {"albedo.R", "albedo.G", "albedo.B"});
+    return aovs_;
+}
+
+// Colours to show as they are; relative errors of the error layer.
+std::vector<glm::vec3> PreviewWorker::develop_layer(Layer layer, const PreviewPicture& picture) {
+    if (layer == Layer::error) return relative_errors(picture.radiance, errors_);
+    if (layer == Layer::albedo) return read_colors(aovs(picture), {"albedo.R", "albedo.G", "albedo.B"});
     std::vector<glm::vec3> result;
     if (layer == Layer::normal) {
-        result = read_colors(aovs_, {"normal.X", "normal.Y", "normal.Z"});
+        result = read_colors(aovs(picture), {"normal.X", "normal.Y", "normal.Z"});
         for (glm::vec3& n : result) n = 0.5f * n + 0.5f;
         return result;
     }
-    result = read_colors(aovs_, {"depth.Z"});
+    result = read_colors(aovs(picture), {"depth.Z"});
     float most = 1e-30f;
     for (const glm::vec3& d : result) most = std::max(most, d.x);
     for (glm::vec3& d : result) d = glm::vec3(d.x > 0 ? 1 - d.x / most : 0.0f);  // far is dark
@@ -77,6 +82,11 @@ void PreviewWorker::publish(const PreviewRequest& request) {
     picture->layer = request.layer;
     if (request.layer != Layer::radiance) picture->shown = develop_layer(request.layer, *picture);
     picture->errors = errors_;
+    if (request.wants_depth) {
+        const Image& image = aovs(*picture);
+        const auto depth = plane(image, size_t(find_channel(image, "depth.Z")));
+        picture->depth.assign(depth.begin(), depth.end());
+    }
     picture->passes = renderer_->passes();
     picture->request = request;
     picture_ = std::move(picture);

@@ -26,6 +26,7 @@ std::string as_json(const std::vector<RecordedPath>& paths) {
                                 {"arriving", v.arriving},
                                 {"leaving", v.leaving},
                                 {"throughput", array(v.throughput)}});
+            if (!v.shape.empty()) vertices.back()["shape"] = v.shape;
             if (v.smooth) vertices.back()["smooth"] = true;
             if (v.roulette) vertices.back()["ended_by_roulette"] = true;
         }
@@ -49,14 +50,15 @@ std::string quoted(const std::string& text) {
 }
 
 std::string as_csv(const std::vector<RecordedPath>& paths) {
-    std::string text = "path,vertex,event,object,x,y,z,arriving,leaving,wavelength\n";
+    std::string text = "path,vertex,event,object,shape,x,y,z,arriving,leaving,wavelength\n";
     for (size_t p = 0; p < paths.size(); ++p)
         for (size_t i = 0; i < paths[p].vertices.size(); ++i) {
             const PathVertex& v = paths[p].vertices[i];
             const double nm = wavelength_at(paths[p], v);
-            text += fmt::format("{},{},{},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.7g},{}\n", p, i,
-                                event_name(v.event), quoted(v.object), v.position.x, v.position.y,
-                                v.position.z, v.arriving, v.leaving, nm > 0 ? fmt::format("{:.7g}", nm) : "");
+            text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.7g},{}\n", p, i,
+                                event_name(v.event), quoted(v.object), quoted(v.shape), v.position.x,
+                                v.position.y, v.position.z, v.arriving, v.leaving,
+                                nm > 0 ? fmt::format("{:.7g}", nm) : "");
         }
     return text;
 }

@@ -15,12 +15,12 @@ namespace etendue {
 struct DeviceVertex {
     glm::vec3 position;
     uint32_t event;
-    uint32_t material, light, medium;
+    uint32_t material, light, medium, primitive;
     float arriving, leaving;
     glm::vec3 rgb;
     glm::vec4 throughput;
 };
-static_assert(sizeof(DeviceVertex) == 64);
+static_assert(sizeof(DeviceVertex) == 68);
 
 namespace {
 
@@ -82,9 +82,16 @@ glm::vec3 line_color(const RecordedPath& path, const PathVertex& vertex) {
 }
 
 bool PathFilter::keeps(const RecordedPath& path) const {
-    return std::any_of(path.vertices.begin(), path.vertices.end(), [&](const PathVertex& v) {
-        return (events.empty() || events.count(v.event)) && (objects.empty() || objects.count(v.object));
-    });
+    const auto is_at = [](const PathVertex& v, const std::set<std::string>& names) {
+        return names.count(v.object) > 0 || names.count(v.shape) > 0;
+    };
+    const auto any = [&](const auto& is_so) {
+        return std::any_of(path.vertices.begin(), path.vertices.end(), is_so);
+    };
+    return any([&](const PathVertex& v) {
+               return (events.empty() || events.count(v.event)) && (objects.empty() || is_at(v, objects));
+           }) &&
+           !any([&](const PathVertex& v) { return is_at(v, without); });
 }
 
 PathRecorder::PathRecorder(Device& device, Scene& scene, const RenderSettings& settings, bool forward,
@@ -131,8 +138,11 @@ PathVertex PathRecorder::vertex_of(const DeviceVertex& v, double unit) const {
         if (medium != scene_.medium_names.end()) vertex.object = medium->second;
     } else if (v.material < scene_.material_names.size()) {
         vertex.object = scene_.material_names[v.material];
+        if (v.primitive < scene_.placed->size())
+            vertex.shape = scene_.placed_names[scene_.placed->at(v.primitive)];
     } else if (v.light < scene_.light_names.size()) {
         vertex.object = scene_.light_names[v.light];
+        vertex.shape = scene_.light_shapes[v.light];
     }
     vertex.arriving = unit * v.arriving, vertex.leaving = unit * v.leaving;
     vertex.throughput = v.throughput;

@@ -29,6 +29,7 @@ struct PathVertex {
     bool roulette = false;   // Russian roulette or the depth limit ended the path here
     glm::dvec3 position{0};  // m, in the coordinates of the scene file
     std::string object;  // name of the material, of the medium where it scattered, of the light it came from
+    std::string shape;   // name of the shape or of the mesh's node; empty where there is none
     // What the path carries when it arrives and when it goes on. Forward: lm. Backward: the share of a
     // radiance along the ray that reaches the pixel.
     double arriving = 0, leaving = 0;
@@ -52,10 +53,11 @@ double wavelength_at(const RecordedPath& path, const PathVertex& vertex);
 // that is left, by the CIE observer, else of what the path carries. Black where it carries nothing.
 glm::vec3 line_color(const RecordedPath& path, const PathVertex& vertex);
 
-// Keeps paths that have a vertex of one of the events at one of the objects; empty = any.
+// Keeps paths that have a vertex of one of the events at one of the objects, empty = any, and none at those
+// that they are to be without. Objects are materials, media, lights, shapes and nodes, by name.
 struct PathFilter {
     std::set<PathEvent> events;
-    std::set<std::string> objects;
+    std::set<std::string> objects, without;
     bool keeps(const RecordedPath& path) const;
 };
 

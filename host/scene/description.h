@@ -69,6 +69,7 @@ struct MeshInstance {
     uint32_t mesh = 0;
     glm::dmat4 world_from_local{1.0};
     std::string where;
+    std::string name = {};  // of the node, else of the mesh
 };
 
 // An object placed by a node: a geometry with its material, a light, a receiver or an element.
@@ -101,10 +102,11 @@ struct ClassFileDescription {
     std::string where;
 };
 
-// The part of a scene that is edited while one looks at it (live_scene.h): all objects of classes.
+// The part of a scene that is edited while one looks at it (live_scene.h): all but meshes and images.
 struct SceneObjects {
     std::vector<MediumDescription> media;
     std::vector<MaterialDescription> materials;
+    std::vector<MeshInstance> instances;
     std::vector<PlacedObject> shapes, lights, receivers, elements;
     std::optional<ObjectDescription> environment;
 };
@@ -116,7 +118,6 @@ struct SceneDescription : SceneObjects {
     std::vector<ImageDescription> images;
     std::vector<TextureDescription> textures;
     std::vector<MeshDescription> meshes;
-    std::vector<MeshInstance> instances;
     std::vector<std::string> warnings;  // one line each: what was read but is not modelled
 };
 

@@ -18,4 +18,7 @@ SceneDescription import_gltf(const std::filesystem::path& file);
 // `file` is where relative URIs are looked up.
 SceneDescription import_gltf(std::span<const uint8_t> bytes, const std::filesystem::path& file);
 
+// What is wrong with a material that has a priority; null = nothing.
+const char* priority_error(const MaterialDescription& material);
+
 }  // namespace etendue

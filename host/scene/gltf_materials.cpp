@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/scene/gltf.h"
 #include "host/scene/gltf_import.h"
 #include "host/spectra/spectrum.h"
 
@@ -195,13 +196,9 @@ void read_emission(GltfImport& import, const JsonAt& at, MaterialDescription& ma
     material.emission = emission;
 }
 
-// What is around a body with a priority follows from the others, and its faces may vanish, with what they
-// emit.
 void check_priority(const JsonAt& at, const MaterialDescription& material) {
-    const JsonAt priority = member(*find_extension(at, "ETD_optics"), "priority");
-    if (material.inside.empty()) fail_at(priority, "a material with a priority must name a medium inside");
-    if (!material.outside.empty()) fail_at(priority, "a material with a priority must name none outside");
-    if (material.emission) fail_at(priority, "a material with a priority must not emit");
+    if (const char* wrong = priority_error(material))
+        fail_at(member(*find_extension(at, "ETD_optics"), "priority"), "{}", wrong);
 }
 
 MaterialDescription read_material(GltfImport& import, size_t i) {
@@ -238,6 +235,16 @@ MaterialDescription read_material(GltfImport& import, size_t i) {
 }
 
 }  // namespace
+
+// What is around a body with a priority follows from the others, and its faces may vanish, with what they
+// emit.
+const char* priority_error(const MaterialDescription& material) {
+    if (material.priority == 0) return nullptr;
+    if (material.inside.empty()) return "a material with a priority must name a medium inside";
+    if (!material.outside.empty()) return "a material with a priority must name none outside";
+    if (material.emission) return "a material with a priority must not emit";
+    return nullptr;
+}
 
 void load_materials(GltfImport& import) {
     for (size_t i = 0; i < array_size(import.root, "materials"); ++i)

@@ -168,6 +168,7 @@ void place_mesh(GltfImport& import, const JsonAt& node, const glm::dmat4& world_
         for (uint32_t i = range.first; i < range.first + range.count; ++i) {
             check_world_bounds(node, import.mesh_bounds[i], instance.world_from_local);
             instance.mesh = i;
+            instance.name = text(node, "name", import.scene.meshes[i].name);
             import.scene.instances.push_back(instance);
         }
     }

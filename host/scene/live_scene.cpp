@@ -4,6 +4,7 @@
 
 #include "host/error.h"
 #include "host/scene/gltf.h"
+#include "host/scene/live_places.h"
 
 namespace etendue {
 namespace {
@@ -11,6 +12,9 @@ namespace {
 using nlohmann::json;
 using Part = LiveObject::Part;
 using Quantity = EmissionDescription::Quantity;
+
+constexpr uint32_t most_priority = 1000000;
+constexpr size_t most_places = 1000;  // that are listed
 
 struct QuantityInfo {
     Quantity quantity;
@@ -33,13 +37,44 @@ Parameter spectral_parameter(const char* name, const char* unit, const char* tex
 
 LiveObject emission_object(const MaterialDescription& material, uint32_t index) {
     LiveObject object{Part::emission, index, material.name, "", {}};
+    const EmissionDescription emission = material.emission.value_or(EmissionDescription{});
     for (const QuantityInfo& q : quantities)
-        if (q.quantity == material.emission->quantity)
-            object.parameters.push_back(
-                {spectral_parameter(q.name, q.unit, q.text), material.emission->value});
+        if (q.quantity == emission.quantity)
+            object.parameters.push_back({spectral_parameter(q.name, q.unit, q.text), emission.value});
     object.parameters.push_back(
-        {spectral_parameter("spectrum", "", "Multiplies the value."), material.emission->spectrum});
+        {spectral_parameter("spectrum", "", "Multiplies the value."), emission.spectrum});
     return object;
+}
+
+// Media by their names: type "medium".
+LiveObject boundary_object(const MaterialDescription& material, uint32_t index) {
+    LiveObject object{Part::boundary, index, material.name, "", {}};
+    const auto add = [&](const char* name, const char* type, const char* text, json value) {
+        Parameter p;
+        p.member.name = name, p.member.type = type, p.text = text, p.from_scene = true;
+        object.parameters.push_back({p, std::move(value)});
+    };
+    add("inside", "medium", "Medium behind the surface; none = vacuum.", material.inside);
+    add("outside", "medium", "Medium before the surface; none = vacuum.", material.outside);
+    add("priority", "uint", "Of the body among those that overlap it; 0 = none.", material.priority);
+    object.parameters.back().info.lo = 0, object.parameters.back().info.hi = most_priority;
+    return object;
+}
+
+void set_boundary(MaterialDescription& material, const std::string& name, const json& value) {
+    if (name == "priority") {
+        const bool whole = value.is_number_integer() && value >= 0 && value <= most_priority;
+        if (!value.is_null() && !whole)
+            fail_input("priority {}: must be a whole number within [0, {}]", value.dump(), most_priority);
+        material.priority = value.is_null() ? 0 : value.get<uint32_t>();
+    } else if (name == "inside" || name == "outside") {
+        if (!value.is_null() && !value.is_string())
+            fail_input("{} {}: must name a medium", name, value.dump());
+        (name == "inside" ? material.inside : material.outside) =
+            value.is_null() ? "" : value.get<std::string>();
+    } else {
+        fail_input("there is no {}; allowed: inside, outside, priority", name);
+    }
 }
 
 void set_emission(EmissionDescription& emission, const std::string& name, const json& value) {
@@ -193,7 +228,8 @@ std::vector<LiveObject> LiveScene::objects() const {
     for (size_t i = 0; i < description_.materials.size(); ++i) {
         const MaterialDescription& m = description_.materials[i];
         add(Part::surface, i, m.name, m.surface);
-        if (m.emission) objects.push_back(emission_object(m, uint32_t(i)));
+        objects.push_back(boundary_object(m, uint32_t(i)));
+        if (m.priority == 0) objects.push_back(emission_object(m, uint32_t(i)));
     }
     for (size_t i = 0; i < description_.media.size(); ++i) {
         const MediumDescription& m = description_.media[i];
@@ -209,6 +245,8 @@ std::vector<LiveObject> LiveScene::objects() const {
         add(Part::geometry, i, description_.shapes[i].name, description_.shapes[i].object);
     for (size_t i = 0; i < description_.lights.size(); ++i)
         add(Part::light, i, description_.lights[i].name, description_.lights[i].object);
+    for (size_t i = 0; i < std::min(place_count(description_), most_places); ++i)
+        objects.push_back(described_place(description_, uint32_t(i)));
     if (description_.environment && options_.environment.empty())
         add(Part::environment, 0, "", *description_.environment);
     for (size_t i = 0; i < scene_->receivers.size(); ++i) {
@@ -235,7 +273,13 @@ std::shared_ptr<Scene> LiveScene::set_parameter(const LiveObject& object, const 
     }
     SceneObjects next = description_;
     if (object.part == Part::emission) {
-        set_emission(next.materials.at(object.index).emission.value(), name, value);
+        std::optional<EmissionDescription>& emission = next.materials.at(object.index).emission;
+        if (!emission) emission.emplace();
+        set_emission(*emission, name, value);
+    } else if (object.part == Part::boundary) {
+        set_boundary(next.materials.at(object.index), name, value);
+    } else if (object.part == Part::place) {
+        edit_place(next, object.index, name, value);
     } else if (object.part == Part::phase) {
         MediumDescription& medium = next.media.at(object.index);
         const Parameter& p = *phase_parameter(*scene_->registry, medium);
@@ -245,6 +289,11 @@ std::shared_ptr<Scene> LiveScene::set_parameter(const LiveObject& object, const 
     } else {
         set(edited(next, object).parameters);
     }
+    if (object.part == Part::emission || object.part == Part::boundary)
+        if (const char* wrong = priority_error(next.materials[object.index])) fail_input("{}", wrong);
+    const bool is_body =
+        object.part == Part::place && object.index < next.instances.size() + next.shapes.size();
+    if (object.part == Part::geometry || is_body) options_.varying.insert("places");
     // A value that is changed once will be changed again: it costs one compilation, not one for each of the
     // values that kernels would otherwise take as constants.
     if (!object.class_name.empty())
@@ -281,6 +330,7 @@ std::shared_ptr<Scene> LiveScene::place(const LiveObject& object, const glm::dma
         next.lights.at(object.index).world_from_local = world_from_local;
     else
         fail_input("only geometries, lights and receivers have a place");
+    if (object.part == Part::geometry) options_.varying.insert("places");
     return compile(std::move(next));
 }
 

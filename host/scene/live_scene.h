@@ -20,11 +20,23 @@ struct LiveParameter {
 };
 
 struct LiveObject {
-    enum class Part { surface, emission, medium, phase, geometry, light, environment, receiver };
+    // boundary: media and priority of a material; place: live_places.h.
+    enum class Part {
+        surface,
+        emission,
+        boundary,
+        medium,
+        phase,
+        geometry,
+        light,
+        place,
+        environment,
+        receiver
+    };
     Part part = Part::surface;
     uint32_t index = 0;      // of the material, medium, … in the description; of the receiver in the scene
     std::string name;        // that the file gives; may be empty
-    std::string class_name;  // emission has none
+    std::string class_name;  // emission, boundaries and places have none
     std::vector<LiveParameter> parameters;
 };
 // Of the interface whose classes the object can have; emission's is light.
@@ -39,7 +51,8 @@ class LiveScene {
     const SceneDescription& description() const { return description_; }
     std::vector<LiveObject> objects() const;
 
-    // null = the default. Of the emission of a material, a value under the name of another quantity ("flux"
+    // null = the default. A material that emits nothing has an emission of 0, and may be given another one.
+    // Of the emission of a material, a value under the name of another quantity ("flux"
     // in the place of "radiance") takes the place of the one there is.
     std::shared_ptr<Scene> set_parameter(const LiveObject& object, const std::string& name,
                                          const nlohmann::json& value);

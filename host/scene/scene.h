@@ -56,6 +56,10 @@ struct Scene {
     // material's), of media by RecordRef.
     std::vector<std::string> material_names, light_names;
     std::map<uint32_t, std::string> medium_names;
+    // Of instances of meshes and of shapes; which of them each primitive of the world is of; those of lights,
+    // empty where they have none.
+    std::vector<std::string> placed_names, light_shapes;
+    std::shared_ptr<const std::vector<uint32_t>> placed;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;
     glm::dvec3 center{0};  // of the device's world coordinates
     float radius = 0;      // m, of a sphere around everything
@@ -78,6 +82,7 @@ struct SceneOptions {
     ColorMode color = ColorMode::automatic;
     bool spectral_image = false;  // that is asked for: automatic color is spectral
     // "surface/conductor/roughness": members that kernels read from the records even where all have the same.
+    // "places": where things stand, which kernels of small scenes otherwise hold as numbers.
     std::set<std::string> varying;
     SampleSequence samples = SampleSequence::sobol;
     unsigned threads = 0;  // for building; 0 = all

@@ -30,7 +30,8 @@ void SceneCompiler::add_geometry() {
         memory_.light_positions.clear();
         world = build_world(in_, bounds, refs, threads_, memory_.world_features);
         memory_.unrolled_traversal.clear();
-        if (!has_bodies()) memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
+        if (!has_bodies() && !options_.varying.count("places"))
+            memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
         memory_.world_key = key;
     }
     out_.features.triangles = memory_.world_features.triangles;
@@ -39,6 +40,9 @@ void SceneCompiler::add_geometry() {
     out_.features.vertex_attributes = memory_.world_features.vertex_attributes;
     out_.features.unrolled_traversal = !memory_.unrolled_traversal.empty();
     out_.sources.generated["generated/unrolled_traversal.glsl"] = memory_.unrolled_traversal;
+    out_.placed = world.placed;
+    for (const MeshInstance& instance : in_.instances) out_.placed_names.push_back(instance.name);
+    for (const PlacedObject& shape : in_.shapes) out_.placed_names.push_back(shape.name);
     out_.center = world.center;
     out_.radius = world.bounds.empty() ? 0.0f : 0.5f * glm::length(world.bounds.hi - world.bounds.lo);
     out_.triangles = world.triangles, out_.instances = world.instances, out_.shapes = in_.shapes.size();
@@ -48,7 +52,7 @@ void SceneCompiler::add_geometry() {
 
 // Of all that the world depends on but the meshes themselves.
 uint64_t SceneCompiler::world_key(const std::vector<Box>& shape_bounds) const {
-    uint64_t key = hash_text(has_bodies() ? "bodies" : "");
+    uint64_t key = hash_text(has_bodies() ? "bodies" : options_.varying.count("places") ? "places" : "");
     const auto add = [&](const auto& value) {
         key = hash_text({reinterpret_cast<const char*>(&value), sizeof value}, key);
     };

@@ -1,4 +1,5 @@
 // Lights: which there are, and what they say of their power and extent.
+#include <cmath>
 #include <algorithm>
 #include <cstring>
 
@@ -61,7 +62,10 @@ void SceneCompiler::add_lights() {
     first_area_light_ = uint32_t(infinite.size() + finite.size());
     out_.lights = lights_.size();
     out_.features.light_count = uint32_t(lights_.size());
-    out_.features.scene_radius = out_.radius;
+    // A number in kernels: where places vary it grows in steps, so that most edits leave it as it is.
+    out_.features.scene_radius = options_.varying.count("places") && out_.radius > 0
+                                     ? std::exp2(std::ceil(4 * std::log2(out_.radius)) / 4)
+                                     : out_.radius;
 }
 
 // Triangles that an emissive texture leaves dark are no lights.
@@ -124,6 +128,10 @@ void SceneCompiler::measure_lights() {
         const uint32_t i = order[position];
         sorted_lights.push_back(lights_[i]);
         out_.light_names.push_back(light_names_[i]);
+        out_.light_shapes.push_back(
+            i < first_area_light_
+                ? ""
+                : out_.placed_names[out_.placed->at(area_primitives_[i - first_area_light_])]);
         sorted_bounds.push_back(bounds[i]);
         powers.push_back(bounds[i].power);
         out_.power += bounds[i].power;

@@ -108,14 +108,16 @@ class Builder {
         world_.triangles += mesh.triangles.size();
     }
 
-    // A tree over `primitives`, which are appended to the world's in leaf order. Returns the tree's header.
+    // A tree over `primitives`, which are appended to the world's in leaf order, `order`. Returns the tree's
+    // header.
     uint32_t add_tree(const std::vector<PrimitiveRecord>& primitives, const std::vector<Box>& boxes,
-                      NodeFormat format) {
+                      NodeFormat format, std::vector<uint32_t>* order = nullptr) {
         const Bvh bvh = build_bvh(boxes, threads_);
         const uint32_t first = uint32_t(world_.primitives.size());
         const uint32_t header = encode_bvh(bvh, format, first, world_.nodes);
         world_.primitives.reserve(first + primitives.size());
         for (uint32_t i : bvh.order) world_.primitives.push_back(primitives[i]);
+        if (order) *order = bvh.order;
         const double seconds = world_.statistics.seconds + bvh.statistics.seconds;
         if (first == 0) world_.statistics = bvh.statistics;
         world_.statistics.seconds = seconds;
@@ -184,10 +186,14 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
     builder.keep_indices(features.vertex_attributes);
 
     std::vector<PrimitiveRecord> primitives;
-    for (const MeshInstance& instance : scene.instances)
+    std::vector<uint32_t> placed;
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const MeshInstance& instance = scene.instances[i];
         if (merged(instance.mesh))
             builder.add_triangles(scene.meshes[instance.mesh], recentre * instance.world_from_local,
                                   primitives);
+        placed.resize(primitives.size(), i);
+    }
     std::vector<Box> boxes;
     boxes.reserve(primitives.size());
     for (const PrimitiveRecord& p : primitives) boxes.push_back(triangle_box(p));
@@ -210,19 +216,26 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
     for (size_t i = 0; i < scene.shapes.size(); ++i) {
         place(recentre * scene.shapes[i].world_from_local, PrimitiveKind::shape, shape_refs[i],
               scene.shapes[i].material, shape_bounds[i]);
+        placed.push_back(uint32_t(scene.instances.size() + i));
         features.shapes = true;
     }
     // Instances point to the header of their mesh's tree, which is built behind the world's: patched below.
-    for (const MeshInstance& instance : scene.instances)
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const MeshInstance& instance = scene.instances[i];
         if (!merged(instance.mesh) && !local_bounds[instance.mesh].empty()) {
             place(recentre * instance.world_from_local, PrimitiveKind::instance, instance.mesh, 0,
                   local_bounds[instance.mesh]);
+            placed.push_back(i);
             features.instances = true;
             ++world.instances;
         }
+    }
 
     for (const Box& box : boxes) world.bounds.grow(box);
-    builder.add_tree(primitives, boxes, NodeFormat::quantised);
+    std::vector<uint32_t> order;
+    builder.add_tree(primitives, boxes, NodeFormat::quantised, &order);
+    for (uint32_t& i : order) i = placed[i];
+    world.placed = std::make_shared<const std::vector<uint32_t>>(std::move(order));
     world.world_primitives = uint32_t(world.primitives.size());
     primitives = {}, boxes = {};
 

@@ -7,6 +7,7 @@
 #pragma once
 #include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <vector>
 
 #include "host/scene/bvh.h"
@@ -40,6 +41,8 @@ struct World {
     Box bounds;
     std::vector<PrimitiveRecord> primitives;  // leaf order, one tree behind the other; the world's come first
     uint32_t world_primitives = 0;
+    // Of the world's primitives: what they are of, counted through the scene's instances and then its shapes.
+    std::shared_ptr<const std::vector<uint32_t>> placed;
     std::vector<glm::uvec4> nodes;
     std::vector<TransformRecord> transforms;
     std::vector<VertexRecord> vertices;

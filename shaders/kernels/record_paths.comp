@@ -26,6 +26,7 @@ struct DeviceVertex {
     vec3 position;
     uint event;
     uint material, light, medium;  // medium: that the ray arrives in
+    uint primitive;                // of the world, that was hit
     float arriving, leaving;       // luminance of what the path carries
     vec3 rgb;                      // … its colour behind the event
     vec4 throughput;               // … lane by lane
@@ -52,8 +53,8 @@ void main() {
     uint light = NO_RECORD;
 #endif
     float carried = luminance(path.throughput);
-    path_vertices[i * room] = DeviceVertex(path.origin, RECORDED_EMISSION, NO_RECORD, light, path.medium, carried, carried,
-                                           spectrum_rgb(path.throughput), all_lanes(path.throughput));
+    path_vertices[i * room] = DeviceVertex(path.origin, RECORDED_EMISSION, NO_RECORD, light, path.medium, NO_RECORD, carried,
+                                           carried, spectrum_rgb(path.throughput), all_lanes(path.throughput));
     path_counts[i] = 1u;
     Counters counters;
     bool alive = !is_black(path.throughput);
@@ -76,6 +77,8 @@ void main() {
         v.event = escapes ? RECORDED_ESCAPE : ends ? EVENT_NONE : recorded_event.event | (alive ? 0u : RECORDED_ROULETTE);
         v.material = escapes ? NO_RECORD : recorded_event.material;
         v.light = escapes ? NO_RECORD : recorded_event.light;
+        v.primitive = hit.instance != NO_RECORD ? hit.instance : hit.primitive;
+        if (v.material == NO_RECORD) v.primitive = NO_RECORD;
         if (ends) path.throughput = Spectrum(0);
         v.leaving = luminance(path.throughput);
         v.arriving = escapes ? v.leaving : recorded_event.arriving;

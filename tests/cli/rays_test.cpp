@@ -34,6 +34,11 @@ TEST_CASE("paths are written as JSON, as a table and as lines of glTF") {
     }
     CHECK(reflected > 20);
     REQUIRE(with({"r.csv", "--events", "reflected"}).out == fmt::format("{} of 200 paths\n", reflected));
+    const auto kept = [&](const char* option) {
+        return std::atoi(with({"r.csv", option, "ball"}).out.c_str());  // the name of the node
+    };
+    CHECK(size_t(kept("--objects")) >= reflected);
+    CHECK(kept("--objects") + kept("--without") == 200);
     REQUIRE(with({"r.csv"}).code == 0);
     const std::string table = read_text(program.folder / "r.csv");
     CHECK(size_t(std::count(table.begin(), table.end(), '\n')) == vertices + 1);

@@ -104,16 +104,16 @@ TEST_CASE("a line is seen where its ends are, and cut where it passes the camera
         const auto line = seen_line(pose, l, aspect, a, b);
         REQUIRE(line);
         const auto corner = [&](const glm::dvec2& p) { return glm::dvec2(0.5 * aspect + p.x, 0.5 - p.y); };
-        CHECK(near((*line)[0], corner(seen_at(pose, l, a))));
-        CHECK(near((*line)[1], corner(seen_at(pose, l, b))));
+        CHECK(near(line->at[0], corner(seen_at(pose, l, a))));
+        CHECK(near(line->at[1], corner(seen_at(pose, l, b))));
         CHECK(!seen_line(pose, l, aspect, eye(pose) - forward(pose), eye(pose) - 2.0 * forward(pose)));
     }
     // From behind the camera, above it, to the pivot: what is seen of it comes in from above.
     const auto cut =
         seen_line(pose, lens, aspect, eye(pose) - forward(pose) + glm::dvec3(0, 1, 0), pose.pivot);
     REQUIRE(cut);
-    CHECK((*cut)[0].y < -10);
-    CHECK(near((*cut)[1], glm::dvec2(0.5 * aspect, 0.5)));
+    CHECK(cut->at[0].y < -10);
+    CHECK(near(cut->at[1], glm::dvec2(0.5 * aspect, 0.5)));
 }
 
 TEST_CASE("flying goes by metres along the camera's axes") {

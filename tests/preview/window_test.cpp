@@ -90,6 +90,34 @@ TEST_CASE("P draws paths of light over the picture") {
     CHECK(view.close().err == "");
 }
 
+TEST_CASE("a ball stands where one types it in") {
+    ViewedScene view(two_balls, words_with("640x480"));
+    const std::string elsewhere = replaced(two_balls, "[-0.8, 0, 0]", "[-0.2, 0, 0]");
+    const Image image = headless_image(elsewhere, "640x480");
+    // The panel's rows, of a display of 96 dpi.
+    const auto click = [&](int x, int y) {
+        view.x.move(x, y);
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        view.x.press(1);
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    };
+    REQUIRE(view.x.wait_until([](const Screenshot& shot) { return shot.at(635, 5)[0] > 200; }));
+    for (const int y : {47, 70, 93}) click(200, y);  // render, film and camera are closed
+    click(200, 162);                                 // objects
+    click(80, 233), click(100, 250);                 // places, the first of them
+    view.x.hold("Control_L", true);
+    click(80, 270);  // x of its translation, to be typed in
+    view.x.hold("Control_L", false);
+    for (const char* key : {"minus", "0", "period", "2"}) view.x.key(key);
+    view.x.hold("Return", true);  // for some frames, which is how the panels look at keys
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    view.x.hold("Return", false);
+    view.x.move(5, 475);
+    view.x.key("Tab");
+    CHECK(shows(view.x, image, {}, 0.01));  // another traversal: some edges fall on the other side
+    CHECK(view.close().err == "");
+}
+
 TEST_CASE("the question mark lists the keys") {
     ViewedScene view(two_balls, words_with("800x600"));
     view.x.key("Tab");

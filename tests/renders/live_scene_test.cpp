@@ -1,7 +1,10 @@
 // Scenes that are edited while they are rendered: a change shows what a scene file with the new values shows,
 // and compiles no more than that needs.
+#include <cmath>
+
 #include "host/error.h"
 #include "host/gpu/shader_compiler.h"
+#include "host/scene/live_places.h"
 #include "host/scene/live_scene.h"
 #include "tests/support/render_probe.h"
 #include "tests/support/temporary_folder.h"
@@ -103,15 +106,188 @@ TEST_CASE("an edited scene shows what a file with the new values shows") {
     now.roughness = 0;  // a smooth metal: kernels have known it as one that may be rough
     CHECK(edit(find(objects, Part::surface, 1), "alpha", now.roughness) == 0);
     now.radiance = {1, 2, 9};
-    CHECK(edit(find(objects, Part::emission), "radiance", now.radiance) == 0);
+    CHECK(edit(find(objects, Part::emission, 2), "radiance", now.radiance) == 0);  // of the third material
     now.intensity = 7;
     CHECK(edit(find(objects, Part::light), "intensity", 7) == 0);
     now.absorption = {1, 0, 0};
     CHECK(edit(find(objects, Part::medium), "absorption", now.absorption) == 0);
-    now.radius = 0.4;  // geometry stands in the kernels of so small a scene
-    CHECK(edit(find(objects, Part::geometry, 3), "radius", 0.4) > 0);
-    now.radius = 0.5;
-    CHECK(edit(find(objects, Part::geometry, 3), "radius", 0.5) == 0);  // as at first
+    // Geometry stands in the kernels of so small a scene, until it is edited.
+    varying.insert("places");
+    for (const double radius : {0.4, 0.5, 0.45}) {
+        now.radius = radius;
+        const size_t count = edit(find(objects, Part::geometry, 3), "radius", radius);
+        CHECK((count > 0) == (radius == 0.4));
+    }
+}
+
+namespace {
+
+// A ball of a medium in another one, beside a mesh, before a wall that shines.
+struct Bodies {
+    json ball = {{"surface", {{"class", "dielectric"}}}, {"inside", "ink"}};
+    json shell = {{"surface", {{"class", "dielectric"}}}, {"inside", "oil"}};
+    json wall = {{"surface", {{"class", "lambertian"}}}};
+    json mesh = {{"translation", {0.9, 0, 0}}};
+};
+
+SceneBuilder bodies(const Bodies& b) {
+    SceneBuilder s;
+    s.medium("ink", {{"absorption", {0.2, 0.5, 1.0}}, {"ior", 1.3}});
+    s.medium("oil", {{"absorption", {2.0, 0.2, 0.1}}, {"ior", 1.5}});
+    s.sphere(0.4, s.material(b.ball), at(0, 0, 0));
+    s.sphere(0.5, s.material(b.shell), at(0.2, 0, 0));
+    s.rectangle(4, 4, s.material(b.wall), at(0, 0, -1));
+    s.mesh({{-0.3f, -0.3f, 0}, {0.3f, -0.3f, 0}, {0, 0.4f, 0.2f}}, {0, 1, 2}, s.lambertian(0.6), at(0, 0, 0));
+    s.document["nodes"].back().erase("rotation");
+    s.document["nodes"].back().update(b.mesh);
+    s.document["nodes"].back()["name"] = "flag";
+    s.environment(1);
+    s.perspective(0.8, at(0, 0, 3));
+    return s;
+}
+
+const LiveObject& find_place(const std::vector<LiveObject>& objects, const std::string& name) {
+    for (const LiveObject& o : objects)
+        if (o.part == Part::place && o.name == name) return o;
+    FAIL("no such place");
+    return objects[0];
+}
+
+json quaternion(double degrees, const glm::dvec3& axis) {
+    const double half = glm::radians(degrees) / 2;
+    return {std::sin(half) * axis.x, std::sin(half) * axis.y, std::sin(half) * axis.z, std::cos(half)};
+}
+
+std::vector<float> picture(Scene& scene) {
+    RenderSettings settings;
+    settings.width = 24, settings.height = 24;
+    settings.receiver = scene.receivers[0].ref;
+    settings.algorithm = Algorithm::backward;
+    Renderer renderer(test_device(), scene, settings);
+    renderer.render_passes(4);
+    return renderer.develop(false).values;
+}
+
+double relative_difference(const std::vector<float>& a, const std::vector<float>& b) {
+    REQUIRE(a.size() == b.size());
+    double sum = 0, difference = 0;
+    for (size_t i = 0; i < a.size(); ++i)
+        sum += std::abs(a[i]) + std::abs(b[i]), difference += std::abs(a[i] - b[i]);
+    return difference / sum;
+}
+
+}  // namespace
+
+TEST_CASE("media, priorities, emission and places that are edited show what a file with them shows") {
+    TemporaryFolder folder;
+    Bodies now;
+    LiveScene live(test_device(), write(folder, bodies(now)), test_options());
+    std::set<std::string> varying;
+    std::vector<float> before = picture(*live.scene());
+    const auto expected = [&] {
+        SceneOptions options = test_options();
+        options.varying = varying;
+        Scene scene = compile_scene(test_device(), bodies(now).import(), options);
+        return picture(scene);
+    };
+    const auto edit = [&](const LiveObject& object, const std::string& name, const json& value) {
+        CAPTURE(name);
+        live.set_parameter(object, name, value);
+        live.accept();
+        const std::vector<float> after = picture(*live.scene());
+        CHECK(after != before);
+        CHECK(relative_difference(after, expected()) < 1e-3);  // rotations are rounded otherwise
+        before = after;
+    };
+    const auto objects = live.objects();
+    const LiveObject ball = find(objects, Part::boundary, 0), shell = find(objects, Part::boundary, 1);
+    now.ball["inside"] = "oil";
+    edit(ball, "inside", "oil");
+    now.ball["outside"] = "ink";
+    edit(ball, "outside", "ink");
+    now.ball.erase("outside"), now.ball["inside"] = "ink";
+    live.set_parameter(ball, "outside", nullptr), live.accept();
+    edit(ball, "inside", "ink");
+    now.ball["priority"] = 2;
+    edit(ball, "priority", 2);
+    now.shell["priority"] = 1;
+    live.set_parameter(shell, "priority", 1), live.accept();
+    before = picture(*live.scene());
+    now.shell["priority"] = 3;  // now the shell is before the ball
+    edit(shell, "priority", 3);
+    CHECK(find(live.objects(), Part::boundary, 1).parameters[2].value == 3);
+
+    now.wall["emission"] = {{"radiance", {3, 1, 0.5}}};
+    edit(find(live.objects(), Part::emission, 0), "radiance", {3, 1, 0.5});
+
+    varying.insert("places");
+    const LiveObject flag = find_place(objects, "flag");
+    CHECK(flag.parameters[0].value == json({0.9, 0, 0}));
+    now.mesh["translation"] = {0.7, 0.3, 0.4};
+    edit(flag, "translation", {0.7, 0.3, 0.4});
+    now.mesh["rotation"] = quaternion(70, {0, 1, 0});
+    edit(flag, "rotation", {0, 70, 0});
+    now.mesh["scale"] = {1.5, -0.5, 2};
+    edit(flag, "scale", {1.5, -0.5, 2});
+    CHECK(compiled(*live.scene()) == 0);  // where things stand is in no kernel any more
+}
+
+TEST_CASE("rotation and scale of a place can be read back, whatever the order they were set in") {
+    SceneObjects scene;
+    scene.shapes.resize(1);
+    scene.lights.resize(1);
+    edit_place(scene, 0, "scale", {2, 3, -4});
+    edit_place(scene, 0, "rotation", {20, -50, 130});
+    edit_place(scene, 0, "translation", {1, 2, 3});
+    edit_place(scene, 0, "scale", {5, 6, 7});
+    const auto value = [&](size_t which, int i) {
+        return described_place(scene, 0).parameters[which].value[size_t(i)].get<double>();
+    };
+    const double expected[3][3] = {{1, 2, 3}, {20, -50, 130}, {5, 6, 7}};
+    for (size_t which = 0; which < 3; ++which)
+        for (int i = 0; i < 3; ++i) CHECK(value(which, i) == doctest::Approx(expected[which][i]));
+    CHECK(described_place(scene, 1).parameters.size() == 2);  // a light
+    // Shear stays.
+    glm::dmat4& m = scene.shapes[0].world_from_local;
+    m = glm::dmat4(1.0);
+    m[1].x = 0.5;
+    edit_place(scene, 0, "rotation", {0, 0, 90});
+    CHECK(glm::length(glm::dvec3(m[1]) - glm::dvec3(-1, 0.5, 0)) < 1e-12);
+}
+
+TEST_CASE("media, priorities and places that cannot be leave the scene as it was") {
+    TemporaryFolder folder;
+    LiveScene live(test_device(), write(folder, bodies({})), test_options());
+    const std::shared_ptr<Scene> scene = live.scene();
+    const auto objects = live.objects();
+    const LiveObject ball = find(objects, Part::boundary, 0), wall = find(objects, Part::boundary, 2),
+                     flag = find_place(objects, "flag");
+    const auto complaint = [&](const LiveObject& object, const std::string& name, const json& value) {
+        try {
+            live.set_parameter(object, name, value);
+        } catch (const Error& error) {
+            CHECK(error.code == ExitCode::bad_input);
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const auto says = [](const std::string& line, const char* what) {
+        CAPTURE(line);
+        CHECK(line.find(what) != std::string::npos);
+        CHECK(line.find('\n') == std::string::npos);
+    };
+    says(complaint(ball, "inside", "milk"), "milk is not the name of a medium");
+    says(complaint(ball, "inside", 3), "must name a medium");
+    says(complaint(ball, "priority", -1), "whole number");
+    says(complaint(ball, "priority", 1.5), "whole number");
+    says(complaint(wall, "priority", 1), "must name a medium inside");
+    says(complaint(ball, "thickness", 1), "allowed: inside, outside, priority");
+    says(complaint(flag, "translation", {1, 2}), "three numbers");
+    says(complaint(flag, "translation", {1, 2, 1e30}), "three numbers");
+    says(complaint(flag, "scale", {1, 0, 1}), "must not be 0");
+    says(complaint(flag, "shear", 1), "allowed: translation, rotation, scale");
+    CHECK(live.scene() == scene);
+    CHECK(find(live.objects(), Part::boundary, 0).parameters[0].value == "ink");
 }
 
 TEST_CASE("new classes, places and media take effect, and receivers that were moved stay") {
@@ -181,7 +357,7 @@ TEST_CASE("what is wrong changes nothing and is told in the words of a scene fil
     CHECK(message([&] { live.reload(); }).find("scene.gltf") != std::string::npos);
     live.accept();  // of nothing
     CHECK(live.scene() == scene);
-    CHECK(live.objects()[1].parameters[3].value == 0.2);
+    CHECK(find(live.objects(), Part::surface, 1).parameters[3].value == 0.2);
     CHECK(film(*live.scene()) == seen);
 }
 
@@ -189,9 +365,9 @@ TEST_CASE("objects are listed with what their classes know of their parameters")
     TemporaryFolder folder;
     LiveScene live(test_device(), write(folder, room({})), test_options());
     const auto objects = live.objects();
-    // Five materials, one of which emits, a medium with its phase function, four geometries, a light, a
-    // camera.
-    CHECK(objects.size() == 4 + 1 + 2 + 4 + 1 + 1);
+    // Four materials, each with its media and its emission, a medium with its phase function, four geometries
+    // and a light with their places, a camera.
+    CHECK(objects.size() == 4 * 3 + 2 + 4 * 2 + 2 + 1);
     const LiveObject& metal = find(objects, Part::surface, 1);
     CHECK(metal.class_name == "conductor");
     const LiveParameter& alpha = metal.parameters.at(3);

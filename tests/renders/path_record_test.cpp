@@ -154,6 +154,70 @@ TEST_CASE("events in a ball of glass, and what it absorbs") {
     CHECK(std::none_of(paths.begin(), paths.end(), [&](auto& p) { return filter.keeps(p); }));
     CHECK(through > 20);
     CHECK(through < 2000);
+    filter = {{}, {}, {"ball"}};
+    const auto past = std::count_if(paths.begin(), paths.end(), [&](auto& p) { return filter.keeps(p); });
+    const auto touching = std::count_if(paths.begin(), paths.end(), [&](auto& p) {
+        return std::any_of(p.vertices.begin(), p.vertices.end(), [](auto& v) { return v.object == "ball"; });
+    });
+    CHECK(touching > 20);
+    CHECK(past + touching == std::ptrdiff_t(paths.size()));
+}
+
+namespace {
+
+// Plates side by side of one material: a mesh, another one placed twice, of so many squares along a side, and
+// an analytic shape, seen from the front.
+SceneBuilder four_plates(uint32_t squares) {
+    SceneBuilder s;
+    const int white = s.lambertian(0.5);
+    const auto grid = [&](uint32_t n, const Place& place) {
+        std::vector<glm::vec3> positions;
+        std::vector<uint32_t> indices;
+        for (uint32_t y = 0; y <= n; ++y)
+            for (uint32_t x = 0; x <= n; ++x) {
+                positions.push_back(
+                    {0.8f * float(x) / float(n) - 0.4f, 0.8f * float(y) / float(n) - 0.4f, 0});
+                const uint32_t i = y * (n + 1) + x, above = i + n + 1;
+                if (x < n && y < n) indices.insert(indices.end(), {i, i + 1, above + 1, i, above + 1, above});
+            }
+        s.mesh(positions, indices, white, place);
+    };
+    const auto name = [&](const char* text) { s.document["nodes"].back()["name"] = text; };
+    grid(1, at(-1.5, 0, 0)), name("first");
+    grid(squares, at(-0.5, 0, 0)), name("second");
+    s.mesh_copy(at(0.5, 0, 0)), name("third");
+    s.rectangle(0.8, 0.8, white, at(1.5, 0, 0)), name("fourth");
+    s.environment(1);
+    s.perspective(0.9, at(0, 0, 4), "eye");
+    return s;
+}
+
+}  // namespace
+
+TEST_CASE("paths know the shapes and nodes that they come to") {
+    for (const uint32_t squares : {1u, 200u}) {  // all merged, or true instances
+        CAPTURE(squares);
+        Scene scene = compile_test_scene(four_plates(squares).import());
+        CHECK(scene.features.instances == (squares > 1));
+        std::map<std::string, int> met;
+        const auto paths = record_all(scene, settings_for(scene, 64, 24), false);
+        for (const RecordedPath& path : paths) {
+            const PathVertex& v = path.vertices.at(1);
+            if (v.event == PathEvent::escaped) {
+                CHECK(v.shape == "");
+                continue;
+            }
+            const char* names[] = {"first", "second", "third", "fourth"};
+            CHECK(v.shape == names[int(std::floor(v.position.x)) + 2]);
+            ++met[v.shape];
+        }
+        CHECK(met.size() == 4);
+        const PathFilter third{{}, {"third"}, {}}, others{{}, {}, {"third"}};
+        CHECK(std::count_if(paths.begin(), paths.end(), [&](auto& p) { return third.keeps(p); }) ==
+              met["third"]);
+        CHECK(std::count_if(paths.begin(), paths.end(), [&](auto& p) { return others.keeps(p); }) ==
+              std::ptrdiff_t(paths.size()) - met["third"]);
+    }
 }
 
 TEST_CASE("paths are those that the renderer traces") {

@@ -12,9 +12,10 @@ namespace {
 
 using Part = LiveObject::Part;
 constexpr std::pair<Part, const char*> parts[] = {
-    {Part::surface, "surfaces"},        {Part::emission, "emission"}, {Part::medium, "media"},
-    {Part::phase, "phase functions"},   {Part::geometry, "shapes"},   {Part::light, "lights"},
-    {Part::environment, "environment"}, {Part::receiver, "receivers"}};
+    {Part::surface, "surfaces"},  {Part::emission, "emission"}, {Part::boundary, "media and priorities"},
+    {Part::medium, "media"},      {Part::place, "places"},      {Part::phase, "phase functions"},
+    {Part::geometry, "shapes"},   {Part::light, "lights"},      {Part::environment, "environment"},
+    {Part::receiver, "receivers"}};
 
 bool is_numbers(const nlohmann::json& value, size_t count) {
     return value.is_array() && value.size() == count &&
@@ -55,8 +56,23 @@ bool edit_text(const char* label, nlohmann::json& value) {
     return true;
 }
 
-bool edit_value(const Parameter& p, nlohmann::json& value) {
+// One of the scene's media, or none.
+bool edit_medium(const ViewState& state, const char* label, nlohmann::json& value) {
+    const std::string now = value.is_string() ? value.get<std::string>() : "";
+    std::string chosen = now;
+    if (!ImGui::BeginCombo(label, now.empty() ? "none" : now.c_str())) return false;
+    if (ImGui::Selectable("none", now.empty())) chosen = "";
+    for (const LiveObject& object : state.objects)
+        if (object.part == Part::medium && ImGui::Selectable(object.name.c_str(), object.name == now))
+            chosen = object.name;
+    ImGui::EndCombo();
+    value = chosen;
+    return chosen != now;
+}
+
+bool edit_value(const ViewState& state, const Parameter& p, nlohmann::json& value) {
     const char* label = p.member.name.c_str();
+    if (p.member.type == "medium") return edit_medium(state, label, value);
     if (value.is_boolean()) {
         bool on = value.get<bool>();
         if (!ImGui::Checkbox(label, &on)) return false;
@@ -71,7 +87,7 @@ bool edit_value(const Parameter& p, nlohmann::json& value) {
 void draw_class(ViewState& state, LiveObject& object) {
     const auto names = state.status.class_names.find(interface_of(object.part));
     const bool fixed =
-        object.part == Part::receiver || object.part == Part::emission || object.part == Part::phase;
+        object.part == Part::receiver || object.part == Part::phase || object.class_name.empty();
     if (fixed || names == state.status.class_names.end()) {
         if (!object.class_name.empty()) ImGui::TextUnformatted(object.class_name.c_str());
         return;
@@ -84,13 +100,14 @@ void draw_class(ViewState& state, LiveObject& object) {
 }
 
 void draw_object(ViewState& state, LiveObject& object) {
-    const std::string label = fmt::format("{}{}{}###{}-{}", object.name, object.name.empty() ? "" : ": ",
-                                          object.class_name, int(object.part), object.index);
+    const char* colon = object.name.empty() || object.class_name.empty() ? "" : ": ";
+    const std::string label =
+        fmt::format("{}{}{}###{}-{}", object.name, colon, object.class_name, int(object.part), object.index);
     if (!ImGui::TreeNode(label.c_str())) return;
     draw_class(state, object);
     for (LiveParameter& parameter : object.parameters) {
         if (parameter.info.member.type == "TextureRef" && parameter.value.is_null()) continue;
-        if (edit_value(parameter.info, parameter.value))
+        if (edit_value(state, parameter.info, parameter.value))
             edit_object(state, {object, parameter.info.member.name, parameter.value});
         if (ImGui::IsItemHovered())
             ImGui::SetTooltip("%s", fmt::format("{} {} {}", parameter.info.text, parameter.info.unit,

@@ -36,8 +36,9 @@ struct ObjectEdit {
 struct RayView {
     bool on = false;
     bool forward = true;
-    bool by_power = false;  // colours: else by wavelength, or by what the path carries
-    int count = 200;        // paths that are traced, of which the filter keeps some
+    bool by_power = false;     // colours: else by wavelength, or by what the path carries
+    bool faint_behind = true;  // what lies behind surfaces
+    int count = 200;           // paths that are traced, of which the filter keeps some
     PathFilter filter;
     std::vector<RecordedPath> paths;
     bool wanted = false;   // they are to be traced

@@ -146,6 +146,7 @@ void tell_session(ViewState& state) {
     state.request.width = hidden ? 0 : uint32_t(width);
     state.request.height = hidden ? 0 : uint32_t(height);
     state.request.moving = glfwGetTime() - state.moved_at < moving_seconds;
+    state.request.wants_depth = state.rays.on && state.rays.faint_behind;
     state.request.placement = state.moved ? std::optional(state.pose.placement) : std::nullopt;
     state.session.request(state.request);
 }
