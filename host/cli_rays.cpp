@@ -32,7 +32,8 @@ CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments
         ->option_text("lights|receiver");
     rays->add_option(
             "--events", arguments.events,
-            "Keep paths with one of: emitted, reflected, refracted, straight, scattered, absorbed, escaped")
+            "Keep paths with one of: emitted, reflected, refracted, straight, scattered, bent, absorbed, "
+            "escaped")
         ->option_text("E,…");
     rays->add_option("--objects", arguments.objects,
                      "Keep paths with an event at one of these: shapes, nodes, materials, media, lights")

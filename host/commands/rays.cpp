@@ -21,8 +21,8 @@ PathFilter filter_of(const RaysOptions& options) {
         while (name != event_name(event)) {
             if (event == PathEvent::escaped)
                 fail_input(
-                    "--events {}: allowed: emitted, reflected, refracted, straight, scattered, absorbed, "
-                    "escaped",
+                    "--events {}: allowed: emitted, reflected, refracted, straight, scattered, bent, "
+                    "absorbed, escaped",
                     name);
             event = PathEvent(int(event) + 1);
         }

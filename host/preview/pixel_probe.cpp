@@ -1,5 +1,9 @@
 #include "host/preview/pixel_probe.h"
 
+#include <optional>
+
+#include "host/render/start_media.h"
+
 namespace etendue {
 
 SeenPoint see_point(PreviewScene& scene, const glm::dvec2& film) {
@@ -10,14 +14,21 @@ SeenPoint see_point(PreviewScene& scene, const glm::dvec2& film) {
         uint32_t material, surface;
     };
     const Buffer buffer(scene.device, sizeof(Record), "SeenPoints");
-    const Kernel kernel =
-        make_color_kernel(scene.device, scene.scene, "kernels/see_point.comp", {{"SeenPoints", &buffer}});
+    const float film_aspect = float(scene.request.width) / float(scene.request.height);
+    BufferTable table = {{"SeenPoints", &buffer}};
+    std::optional<StartMedia> start_media;  // where the way of a ray depends on the medium that it starts in
+    if (scene.scene.features.bending || scene.scene.features.body_count > 0) {
+        start_media.emplace(scene.device, scene.scene, false);
+        start_media->find(scene.receiver, film_aspect);
+        table["StartMedia"] = &start_media->buffer();
+    }
+    const Kernel kernel = make_color_kernel(scene.device, scene.scene, "kernels/see_point.comp", table);
     CommandList commands(scene.device);
     commands.dispatch(kernel, 1,
                       {{"receiver", scene.receiver},
                        {"film_x", float(film.x)},
                        {"film_y", float(film.y)},
-                       {"film_aspect", float(scene.request.width) / float(scene.request.height)}});
+                       {"film_aspect", film_aspect}});
     commands.run();
     const Record r = buffer.read_array<Record>(1)[0];
     return {r.hit != 0, glm::dvec3(r.position) + scene.scene.center, r.normal, r.distance, r.material,

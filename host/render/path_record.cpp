@@ -32,7 +32,8 @@ enum EventBits : uint32_t {
     straight = 8,
     emission = 16,
     escape = 32,
-    roulette = 64
+    roulette = 64,
+    bend = 128
 };
 
 constexpr uint32_t most_paths = 4096;  // of a dispatch
@@ -40,6 +41,7 @@ constexpr uint32_t most_paths = 4096;  // of a dispatch
 PathEvent event_of(const DeviceVertex& v) {
     if (v.event & emission) return PathEvent::emitted;
     if (v.event & escape) return PathEvent::escaped;
+    if (v.event & bend) return PathEvent::bent;
     if ((v.event & (reflect | transmit | straight)) == 0) return PathEvent::absorbed;
     if (v.event & straight) return PathEvent::straight;
     if (v.material == no_record) return PathEvent::scattered;
@@ -60,6 +62,8 @@ const char* event_name(PathEvent event) {
             return "straight";
         case PathEvent::scattered:
             return "scattered";
+        case PathEvent::bent:
+            return "bent";
         case PathEvent::absorbed:
             return "absorbed";
         default:
@@ -100,7 +104,7 @@ PathRecorder::PathRecorder(Device& device, Scene& scene, const RenderSettings& s
       scene_(scene),
       settings_(settings),
       forward_(forward),
-      room_(std::max(2u, most_vertices)),
+      room_(std::max(2u, most_vertices) * (scene.features.bending ? 4 : 1)),
       paths_(settings.width * settings.height),
       spectra_(device, scene),
       start_media_(std::make_unique<StartMedia>(device, scene, forward)),
@@ -133,7 +137,7 @@ PathVertex PathRecorder::vertex_of(const DeviceVertex& v, double unit) const {
     vertex.smooth = vertex.event != PathEvent::scattered && (v.event & delta);
     vertex.roulette = v.event & roulette;
     vertex.position = glm::dvec3(v.position) + scene_.center;
-    if (vertex.event == PathEvent::scattered) {
+    if (vertex.event == PathEvent::scattered || vertex.event == PathEvent::bent) {
         const auto medium = scene_.medium_names.find(v.medium);
         if (medium != scene_.medium_names.end()) vertex.object = medium->second;
     } else if (v.material < scene_.material_names.size()) {

@@ -18,6 +18,7 @@ enum class PathEvent {
     refracted,  // through a surface, bent or scattered
     straight,   // through a surface as if it were not there
     scattered,  // in a medium
+    bent,       // a point of the way through a medium that bends rays, at every 0.05 rad
     absorbed,   // the path ends; it carries nothing on
     escaped,    // the path leaves the scene: a point at the scene's radius from where it did so
 };
@@ -67,7 +68,8 @@ struct DeviceVertex;
 class PathRecorder {
   public:
     // Of the image that the settings describe: its receiver, size and seed; with forward paths as many a
-    // pixel as they say. Compiles a kernel unless the device has it. `most_vertices`: of a path, at least 2.
+    // pixel as they say. Compiles a kernel unless the device has it. `most_vertices`: of a path, at least 2;
+    // where rays are bent, so many times 4.
     PathRecorder(Device& device, Scene& scene, const RenderSettings& settings, bool forward,
                  uint32_t most_vertices = 64);
     ~PathRecorder();

@@ -22,6 +22,7 @@ layout(push_constant) uniform Push {
 const uint RECORDED_EMISSION = 16u;
 const uint RECORDED_ESCAPE = 32u;
 const uint RECORDED_ROULETTE = 64u;  // the event was the last one by Russian roulette or the depth limit
+const uint RECORDED_BEND = 128u;     // a point of a bent ray
 struct DeviceVertex {
     vec3 position;
     uint event;
@@ -34,6 +35,9 @@ struct DeviceVertex {
 layout(scalar, set = 0) readonly buffer PathIndices { uint path_indices[]; };
 layout(scalar, set = 0) writeonly buffer PathVertices { DeviceVertex path_vertices[]; };
 layout(scalar, set = 0) writeonly buffer PathCounts { uint path_counts[]; };
+
+const float BEND_ANGLE = 0.05;  // rad, between the directions of a bent ray at two of its points: lines stay within 1/160 of
+                                // their length of it
 
 vec4 all_lanes(Spectrum s) {
     vec4 lanes = vec4(0);
@@ -58,12 +62,16 @@ void main() {
     path_counts[i] = 1u;
     Counters counters;
     bool alive = !is_black(path.throughput);
+    vec3 drawn = path.direction;  // of the line behind the last vertex
     for (uint n = 1u; alive && n < room;) {
         DeviceVertex v;
         v.medium = path.medium;
         float end = begin_ray(path);
         vec3 origin = path.origin, direction = path.direction;
         recorded_event.happened = recorded_event.followed = false;
+#if HAS_BENDING
+        bool bends = is_bent(path);
+#endif
         Hit hit = find_hit(origin, direction, end);
         ShadowRay shadow;
 #if FORWARD
@@ -71,20 +79,27 @@ void main() {
 #else
         alive = scatter_path(path, hit, counters, shadow);
 #endif
-        if (alive && !recorded_event.happened) continue;  // past faces that are not there, or along a bent ray
-        bool escapes = !recorded_event.happened, ends = !escapes && !recorded_event.followed;
-        v.position = escapes ? origin + SCENE_RADIUS * direction : recorded_event.position;
-        v.event = escapes ? RECORDED_ESCAPE : ends ? EVENT_NONE : recorded_event.event | (alive ? 0u : RECORDED_ROULETTE);
-        v.material = escapes ? NO_RECORD : recorded_event.material;
-        v.light = escapes ? NO_RECORD : recorded_event.light;
+        bool is_bend = false;
+#if HAS_BENDING
+        // Where a bent ray ends a step, having turned so far that a line would no longer do.
+        is_bend = bends && hit.primitive == NO_RECORD && dot(path.direction, drawn) < cos(BEND_ANGLE);
+#endif
+        if (alive && !recorded_event.happened && !is_bend) continue;  // past faces that are not there, or along a bent ray
+        bool escapes = !recorded_event.happened && !is_bend, ends = recorded_event.happened && !recorded_event.followed;
+        v.position = escapes ? origin + SCENE_RADIUS * direction : is_bend ? path.origin : recorded_event.position;
+        v.event = escapes ? RECORDED_ESCAPE : is_bend ? RECORDED_BEND : ends ? EVENT_NONE : recorded_event.event;
+        if (!escapes && !ends && !alive) v.event |= RECORDED_ROULETTE;
+        v.material = recorded_event.happened ? recorded_event.material : NO_RECORD;
+        v.light = recorded_event.happened ? recorded_event.light : NO_RECORD;
         v.primitive = hit.instance != NO_RECORD ? hit.instance : hit.primitive;
         if (v.material == NO_RECORD) v.primitive = NO_RECORD;
         if (ends) path.throughput = Spectrum(0);
         v.leaving = luminance(path.throughput);
-        v.arriving = escapes ? v.leaving : recorded_event.arriving;
+        v.arriving = recorded_event.happened ? recorded_event.arriving : v.leaving;
         v.rgb = spectrum_rgb(path.throughput);
         v.throughput = all_lanes(path.throughput);
         path_vertices[i * room + n] = v;
         path_counts[i] = ++n;
+        drawn = path.direction;
     }
 }

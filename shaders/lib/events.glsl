@@ -49,14 +49,6 @@ ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float di
     return shadow;
 }
 
-#if HAS_PRIORITIES
-// Past faces that are not there.
-void pass_faces(inout Path path, SurfacePoint p, Crossing c) {
-    path.origin = origin_behind(path.origin, p.position, p.error, p.geometric_normal, path.direction);
-    path.bodies = c.after;
-}
-#endif
-
 #ifdef RECORD_PATHS
 // For kernels/record_paths.comp.
 struct RecordedEvent {

@@ -1,6 +1,7 @@
 // What a ray meets where the meshes of bodies overlap and their faces coincide (lib/bodies.glsl).
 #include "lib/bodies.glsl"
 #include "lib/materials.glsl"
+#include "lib/path.glsl"
 #include "lib/primitives.glsl"
 
 #if HAS_PRIORITIES
@@ -88,5 +89,11 @@ Crossing meet_faces(vec3 origin, vec3 direction, Bodies bodies, inout Hit hit, i
 // The medium on the side of the normal.
 uint medium_above(Crossing c, SurfacePoint p, vec3 direction) {
     return medium_among(dot(direction, p.geometric_normal) > 0.0 ? c.after : c.before);
+}
+
+// Past faces that are not there.
+void pass_faces(inout Path path, SurfacePoint p, Crossing c) {
+    path.origin = origin_behind(path.origin, p.position, p.error, p.geometric_normal, path.direction);
+    path.bodies = c.after;
 }
 #endif
