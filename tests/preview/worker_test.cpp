@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "host/error.h"
 #include "host/preview/pixel_probe.h"
 #include "host/preview/receiver_placement.h"
@@ -183,6 +185,47 @@ TEST_CASE("a pixel tells what it sees, and its spectrum where the film has bins"
     REQUIRE(reading.spectrum.size() == 10);
     viewed.worker->run_task([&](PreviewScene& scene) { reading = read_pixel(scene, {2, 2}); });
     CHECK(!reading.seen.hit);
+}
+
+// A camera within a sphere of graded index, n² = 2.56 (1 - r²/2) with r from the z axis, and a ball in its
+// way that gives way to it.
+constexpr const char* camera_within_rod =
+    R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
+"nodes": [{"extensions": {"ETD_optics": {"geometry": {"class": "sphere", "radius": 1.1, "material": 0}}}},
+          {"translation": [0.45, 0, 0], "extensions": {"ETD_optics": {"geometry": {"class": "sphere", "radius": 0.3, "material": 1}}}},
+          {"camera": 0, "translation": [0.6, 0.1, 0.7]}],
+"materials": [{"name": "end", "extensions": {"ETD_optics": {"surface": {"class": "boundary"}, "inside": "rod", "priority": 2}}},
+              {"name": "ball", "extensions": {"ETD_optics": {"surface": {"class": "boundary"}, "inside": "glass", "priority": 1}}}],
+"cameras": [{"type": "orthographic", "orthographic": {"xmag": 0.1, "ymag": 0.1, "znear": 0, "zfar": 100}}],
+"extensions": {"ETD_optics": {"environment": {"class": "constant", "radiance": 1},
+  "media": [{"name": "rod", "class": "gradient_index", "ior": 1.6, "radial": [-0.5, 0, 0], "tolerance": 2e-5},
+            {"name": "glass", "class": "homogeneous", "ior": 1.5}]}}})";
+
+TEST_CASE("the pointer picks what bent rays come to, past faces that are not there") {
+    Viewed viewed(camera_within_rod);
+    viewed.rest();
+    PixelReading reading;
+    SeenPoint seen;
+    viewed.worker->run_task([&](PreviewScene& scene) {
+        reading = read_pixel(scene, {32, 24});
+        seen = see_point(scene, {0.5, 0.5});
+    });
+    CHECK(reading.material == "end");
+    REQUIRE(seen.hit);
+    // x and y go with cos(1.6 t / sqrt(2)), and z falls by n t, where n is the index at the start: n ds is n²
+    // dt.
+    const auto index_squared = [](const glm::dvec3& p) { return 2.56 * (1 - (p.x * p.x + p.y * p.y) / 2); };
+    const glm::dvec3 start{0.6, 0.1, 0.7};
+    const double fall = std::sqrt(index_squared(start)), dt = 1e-5;
+    glm::dvec3 end = start;
+    double way = 0;
+    for (double t = dt / 2; glm::length(end) < 1.1; t += dt) {
+        const double turned = std::cos(1.6 * t / std::sqrt(2));
+        end = {start.x * turned, start.y * turned, start.z - fall * t};
+        way += std::sqrt(index_squared(end)) * dt;
+    }
+    CHECK(glm::length(seen.position - end) < 1e-4);
+    CHECK(std::abs(double(seen.distance) - way) < 1e-4);
 }
 
 TEST_CASE("a camera that is copied as glTF is the camera") {
