@@ -175,12 +175,6 @@ json volume_parameters(const JsonAt& volume, double ior, double dispersion) {
     return medium;
 }
 
-void add_medium(GltfImport& import, MaterialDescription& material, const JsonAt& at, json parameters) {
-    std::string name = "medium of " + at.pointer;
-    import.scene.media.push_back({name, { "homogeneous", std::move(parameters), at.pointer }});
-    material.inside = name;
-}
-
 void read_emission(GltfImport& import, const JsonAt& at, MaterialDescription& material) {
     std::vector<double> factor = numbers(at, "emissiveFactor", {0, 0, 0}, 0, max_coordinate);
     double strength = 1;
@@ -244,6 +238,12 @@ const char* priority_error(const MaterialDescription& material) {
     if (!material.outside.empty()) return "a material with a priority must name none outside";
     if (material.emission) return "a material with a priority must not emit";
     return nullptr;
+}
+
+void add_medium(GltfImport& import, MaterialDescription& material, const JsonAt& at, json parameters) {
+    std::string name = "medium of " + at.pointer;
+    import.scene.media.push_back({name, { "homogeneous", std::move(parameters), at.pointer }});
+    material.inside = name;
 }
 
 void load_materials(GltfImport& import) {

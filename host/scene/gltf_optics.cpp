@@ -96,6 +96,40 @@ EmissionDescription read_emission(const JsonAt& at) {
     return emission;
 }
 
+// A thin film says what is below it by its own parameters, or by a "base", a surface: a conductor gives eta
+// and k, a dielectric the medium inside; principled covers the rest (diffuse, woven, clear), by its
+// iridescence.
+void put_film_on_base(GltfImport& import, const JsonAt& at, MaterialDescription& material) {
+    const ObjectDescription base = object_description(import, at, {});
+    json& film = material.surface.parameters;
+    json below = base.parameters;
+    if (base.class_name == "principled") {
+        const json ior = film.value("ior", json(1.33));
+        if (!ior.is_number()) fail_at(at, "needs a film whose ior is a number");
+        below["iridescence"] = 1;
+        below["iridescence_ior"] = ior;
+        below["iridescence_thickness_minimum"] = 0;
+        below["iridescence_thickness_maximum"] = film.value("thickness", json(300));
+        if (film.contains("thickness_texture"))
+            below["iridescence_thickness_texture"] = film["thickness_texture"];
+        for (const char* name : {"ior", "thickness", "thickness_texture"}) film.erase(name);
+        material.surface.class_name = "principled";
+    } else if (base.class_name == "conductor") {
+        if (!below.contains("eta")) below["eta"] = 0;
+        if (!below.contains("k")) below["k"] = 1;
+    } else if (base.class_name == "dielectric") {
+        const bool media_named = !material.inside.empty() || !material.outside.empty();
+        if (media_named && below.contains("ior")) fail_at(member(at, "ior"), "is that of the medium named");
+        if (!media_named) add_medium(import, material, at, {{"ior", below.value("ior", json(1.5))}});
+        below.erase("ior");
+    } else {
+        fail_at(member(at, "class"), "is '{}'; must be conductor, dielectric or principled", base.class_name);
+    }
+    for (auto i = below.begin(); i != below.end(); ++i)
+        if (!film.emplace(i.key(), i.value()).second)
+            fail_at(at, "has a \"{}\", and so has the film; must be named once", i.key());
+}
+
 }  // namespace
 
 void load_root_optics(GltfImport& import) {
@@ -111,10 +145,15 @@ void load_root_optics(GltfImport& import) {
 
 void read_material_optics(GltfImport& import, const JsonAt& optics, MaterialDescription& material) {
     only_members(optics, {"surface", "inside", "outside", "priority", "emission"});
-    if (std::optional<JsonAt> surface = find_object(optics, "surface"))
-        material.surface = object_description(import, *surface, {});
     material.inside = text(optics, "inside");
     material.outside = text(optics, "outside");
+    if (std::optional<JsonAt> surface = find_object(optics, "surface")) {
+        const bool is_film = text(*surface, "class") == "thin_film";
+        material.surface = is_film ? object_description(import, *surface, {"base"})
+                                   : object_description(import, *surface, {});
+        if (std::optional<JsonAt> base = is_film ? find_object(*surface, "base") : std::nullopt)
+            put_film_on_base(import, *base, material);
+    }
     if (std::optional<JsonAt> priority = find(optics, "priority"))
         material.priority = uint32_t(integer_value(*priority, 1));
     if (std::optional<JsonAt> emission = find_object(optics, "emission"))

@@ -2,8 +2,9 @@
 // oxides, oil on water, anti-reflection coats, soap. Its colours come from interference (lib/thin_film.glsl). Smooth or, by
 // alpha, a GGX microfacet surface whose facets the film follows; one reflection or refraction at a facet is modelled.
 //
-// Nothing is absorbed in the film. Between media that match, or so nearly that refraction is not resolved, facets count as
-// smooth: a soap film.
+// Scenes may name a "base" instead, a surface: {"class": "conductor" | "dielectric" | "principled", ...}; the last becomes
+// principled with iridescence, so that a film lies on all that glTF describes. Nothing is absorbed in the film. Between
+// media that match, or so nearly that refraction is not resolved, facets count as smooth: a soap film.
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/thin_film.glsl"

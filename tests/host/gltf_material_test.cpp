@@ -266,6 +266,39 @@ TEST_CASE("a dielectric without media named gets one from its ior, and one with 
     CHECK(s.materials[2].outside == "water");
 }
 
+TEST_CASE("a thin film takes what is below from its base") {
+    const auto film = [](const json& base) {
+        return optics({{"surface", {{"class", "thin_film"}, {"thickness", 200}, {"base", base}}}});
+    };
+    GltfBuilder b;
+    b.document["materials"] = {film({{"class", "conductor"}, {"k", 3}, {"alpha", 0.1}}),
+                               film({{"class", "dielectric"}, {"ior", 1.7}, {"alpha", 0.2}}),
+                               film({{"class", "principled"}, {"metallic", 0}, {"ior", 1.6}})};
+    const SceneDescription s = b.import();
+    const ObjectDescription metal = s.materials.at(0).surface, glass = s.materials.at(1).surface;
+    CHECK(metal.class_name == "thin_film");
+    CHECK(metal.parameters == json{{"thickness", 200}, {"eta", 0}, {"k", 3}, {"alpha", 0.1}});
+    CHECK(glass.class_name == "thin_film");
+    CHECK(glass.parameters == json{{"thickness", 200}, {"alpha", 0.2}});
+    REQUIRE(s.media.size() == 1);
+    CHECK(s.materials[1].inside == s.media[0].name);
+    CHECK(s.media[0].medium.parameters == json{{"ior", 1.7}});
+    CHECK(s.materials[2].surface.class_name == "principled");
+    CHECK(s.materials[2].surface.parameters == json{{"metallic", 0},
+                                                    {"ior", 1.6},
+                                                    {"iridescence", 1},
+                                                    {"iridescence_ior", 1.33},
+                                                    {"iridescence_thickness_minimum", 0},
+                                                    {"iridescence_thickness_maximum", 200}});
+
+    const std::string at = "/materials/0/extensions/ETD_optics/surface/base";
+    CHECK(import_error(with_material(film({{"class", "lambertian"}})).glb()) ==
+          "nowhere/scene.glb: " + at +
+              "/class: is 'lambertian'; must be conductor, dielectric or principled");
+    CHECK(import_error(with_material(film({{"class", "conductor"}, {"thickness", 1}})).glb()) ==
+          "nowhere/scene.glb: " + at + ": has a \"thickness\", and so has the film; must be named once");
+}
+
 TEST_CASE("named emission has its quantity and spectrum") {
     SceneDescription s =
         with_material(optics({{"emission", {{"flux", 800}, {"spectrum", {{"illuminant", "A"}}}}}})).import();
