@@ -51,7 +51,7 @@ struct ViewOptions : SceneChoice {  // `size`: of the window, in pixels
     uint64_t vertex_bytes = uint64_t(256) << 20;
     uint64_t seed = 0;
     std::optional<uint64_t> passes;     // after which the picture rests; none = never
-    std::optional<double> exposure;     // powers of two; none = metered from the first picture
+    std::optional<double> exposure;     // powers of two; none = metered
     ToneCurve curve = ToneCurve::srgb;  // to begin with
     std::filesystem::path stats;        // empty = none
 };

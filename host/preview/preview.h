@@ -44,7 +44,8 @@ struct PreviewPicture {
     std::vector<glm::vec3> errors;  // of the radiance, in its unit; empty until they were asked for
     std::vector<float> depth;       // m along the ray, 0 = nothing is there; empty until it was asked for
     uint64_t passes = 0;
-    PreviewRequest request;  // that it answers
+    Algorithm algorithm = Algorithm::backward;  // that made it
+    PreviewRequest request;                     // that it answers
 };
 
 struct PreviewReceiver {

@@ -88,6 +88,7 @@ void PreviewWorker::publish(const PreviewRequest& request) {
         picture->depth.assign(depth.begin(), depth.end());
     }
     picture->passes = renderer_->passes();
+    picture->algorithm = renderer_->choice().algorithm;
     picture->request = request;
     picture_ = std::move(picture);
 }

@@ -1,4 +1,5 @@
 // The tone curves on the device against their twin in double precision, and what the host computes for them.
+#include "host/preview/metering.h"
 #include "host/preview/view_transform.h"
 
 #include <doctest/doctest.h>
@@ -109,4 +110,30 @@ TEST_CASE("metering brings the mean logarithm of the luminance to 18 percent, in
     CHECK(metered_exposure(std::vector<glm::vec3>{{0.09f, 0.09f, 0.09f}, {0.36f, 0.36f, 0.36f}, {0, 0, 0}}) ==
           doctest::Approx(0));
     CHECK(metered_exposure(std::vector<glm::vec3>{glm::vec3(0)}) == 0);
+}
+
+TEST_CASE("the exposure is metered again as pictures become better, until somebody sets it") {
+    Metering metering;
+    PreviewPicture picture;
+    const auto look = [&](double exposure, double light, uint32_t step, uint64_t passes) {
+        picture.radiance = {glm::vec3(float(0.18 * light))};
+        picture.step = step, picture.passes = passes;
+        return metering.look(picture, exposure);
+    };
+    CHECK(look(0, 1.0 / 64, 16, 1).value() == doctest::Approx(6));  // coarse: hardly any light
+    CHECK(!look(6, 1, 16, 1));
+    CHECK(!look(6, 1.0 / 60, 2, 1));  // finer, and too little of a difference
+    CHECK(look(6, 1.0 / 16, 1, 1).value() == doctest::Approx(4));
+    CHECK(look(4, 1.0 / 4, 1, 2).value() == doctest::Approx(2));
+    CHECK(!look(2, 1, 1, 3));   // not twice the passes
+    CHECK(!look(2, 1, 16, 1));  // coarse once more, as another camera begins
+    picture.request.moving = true;
+    CHECK(!look(2, 1, 1, 8));
+    picture.request.moving = false;
+    CHECK(look(2, 1, 1, 16).value() == doctest::Approx(0));
+    CHECK(!look(0, 4, 1, 1000));  // enough
+    picture.algorithm = Algorithm::bidirectional;
+    CHECK(look(0, 4, 1, 1).value() == doctest::Approx(-2));
+    CHECK(!look(-1, 16, 1, 2));  // set by hand
+    CHECK(!look(-2, 16, 1, 8));
 }

@@ -86,7 +86,7 @@ void choose_receiver(ViewState& state, uint32_t index) {
 void meter_exposure(ViewState& state) {
     if (!state.picture) return;
     state.view.exposure = metered_exposure(state.picture->radiance);
-    state.metered = true;
+    state.metering.stop();
 }
 
 void focus_at_pointer(ViewState& state) {
@@ -266,7 +266,9 @@ bool receive_news(ViewState& state) {
             state.request.receiver = state.status.first_receiver;
         if (!state.moved) reset_camera(state);
     }
-    if (state.picture && !state.metered && state.picture->request == state.request) meter_exposure(state);
+    if (state.picture && state.picture != picture_before && state.picture->request == state.request)
+        if (const auto exposure = state.metering.look(*state.picture, state.view.exposure))
+            state.view.exposure = *exposure;
     const bool results = receive_results(state);
     if (state.objects_from != state.status.objects && !state.edit && !state.edit_is_made) {
         state.objects_from = state.status.objects;

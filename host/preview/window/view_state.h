@@ -5,6 +5,7 @@
 #include <string>
 
 #include "host/preview/camera_control.h"
+#include "host/preview/metering.h"
 #include "host/preview/pixel_probe.h"
 #include "host/preview/session.h"
 #include "host/preview/view_transform.h"
@@ -58,7 +59,7 @@ struct ViewState {
     bool moved = false;      // the camera stands elsewhere than in the scene
     double moved_at = -1e9;  // glfwGetTime
     bool panels = true, help = false;
-    bool metered = false;     // the exposure is chosen
+    Metering metering;
     float content_scale = 1;  // of the display: pixels for one of a display of 96 dpi
     std::string notice;       // shown for some seconds
     double notice_at = -1e9;

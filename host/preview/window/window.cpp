@@ -244,7 +244,7 @@ int run_view(const ViewOptions& options) {
     state.window = window.get();
     state.view.curve = options.curve;
     state.view.exposure = options.exposure.value_or(0);
-    state.metered = options.exposure.has_value();
+    if (options.exposure) state.metering.stop();
     state.request.algorithm = options.algorithm;
     state.request.seed = uint32_t(options.seed ^ (options.seed >> 32));
     glfwGetWindowContentScale(state.window, &state.content_scale, nullptr);
