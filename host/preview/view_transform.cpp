@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "host/spectra/color.h"
 
 namespace etendue {
 namespace {
+
+// Powers of two by which highlights darken a picture at most. What lies higher above white would burn out all
+// the same: who looks at a lamp wants to see the room.
+constexpr double most_held_back = 2;
 
 // Rows as in the literature; glm wants columns.
 glm::dmat3 rows(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -70,17 +75,21 @@ glm::dmat3 white_balance(double kelvin) {
 }
 
 double metered_exposure(std::span<const glm::vec3> picture) {
+    std::vector<double> stops;  // log2 of the luminance of pixels that light has met
     double sum = 0;
-    size_t count = 0;
     for (const glm::vec3& rgb : picture) {
         const double y = luminance(glm::dvec3(rgb));
         if (!(y > 1e-12) || !std::isfinite(y)) continue;
-        sum += std::log2(y);
-        ++count;
+        stops.push_back(std::log2(y));
+        sum += stops.back();
     }
-    if (count == 0) return 0;
-    const double thirds = std::round(3 * (std::log2(0.18) - sum / double(count)));
-    return thirds / 3;
+    if (stops.empty()) return 0;
+    const double average = std::log2(0.18) - sum / double(stops.size());
+    std::erase_if(stops, [&](double s) { return s + average > most_held_back; });
+    const auto bright = stops.begin() + std::ptrdiff_t(size_t(0.99 * double(stops.size() - 1)));
+    std::nth_element(stops.begin(), bright, stops.end());
+    const double exposure = std::min(average, -*bright);
+    return std::round(3 * exposure) / 3;
 }
 
 }  // namespace etendue

@@ -39,7 +39,8 @@ glm::dvec2 blackbody_chromaticity(double kelvin);
 glm::dmat3 white_balance(double kelvin);
 
 // Exposure (powers of two) that brings the mean of the logarithms of the luminances to 0.18 (Reinhard et al.
-// 2002, eq. 1 and 2), rounded to a third of a stop; 0 where all is black.
+// 2002, eq. 1 and 2), rounded to a third of a stop; 0 where all is black. Where more than 1 % of the pixels
+// that are not black would be above white it is less, by 2 at most.
 double metered_exposure(std::span<const glm::vec3> picture);
 
 }  // namespace etendue

@@ -112,6 +112,19 @@ TEST_CASE("metering brings the mean logarithm of the luminance to 18 percent, in
     CHECK(metered_exposure(std::vector<glm::vec3>{glm::vec3(0)}) == 0);
 }
 
+TEST_CASE("metering holds highlights back that one pixel in a hundred or more shows, but not lamps") {
+    const auto metered = [](size_t bright, float light) {
+        std::vector<glm::vec3> picture(100000, glm::vec3(0));  // black pixels do not count
+        for (size_t i = 0; i < 1000; ++i) picture[7 * i] = glm::vec3(i < bright ? light : 0.01f);
+        return metered_exposure(picture);
+    };
+    const double dark = std::log2(0.18 / 0.01);
+    CHECK(std::abs(metered(0, 1) - dark) < 0.17);
+    CHECK(std::abs(metered(20, 0.16f) - std::log2(1 / 0.16)) < 0.17);
+    CHECK(std::abs(metered(9, 0.16f) - dark) < 0.25);  // a few sparks
+    CHECK(std::abs(metered(20, 100) - dark) < 0.5);    // a lamp
+}
+
 TEST_CASE("the exposure is metered again as pictures become better, until somebody sets it") {
     Metering metering;
     PreviewPicture picture;
