@@ -10,6 +10,7 @@
 #include "host/error.h"
 #include "host/preview/receiver_placement.h"
 #include "host/render/automatic.h"
+#include "host/scene/scene_files.h"
 
 namespace etendue {
 namespace {
@@ -70,8 +71,8 @@ void PreviewWorker::open() {
 void PreviewWorker::watch_files() {
     std::vector<std::filesystem::path> files = {options_.scene};
     if (!options_.shaders.empty()) files.push_back(options_.shaders);
-    const SceneDescription& scene = live_->description();
-    for (const ClassFileDescription& file : scene.class_files) files.push_back(scene.folder / file.file);
+    if (!options_.environment.empty()) files.push_back(options_.environment);
+    for (const std::filesystem::path& file : files_of(live_->description())) files.push_back(file);
     watched_.watch(files);
 }
 
@@ -293,7 +294,7 @@ bool PreviewWorker::reload_changed() {
         choice_.reset();
         return next;
     });
-    watch_files();
+    if (!status_.is_error) watch_files();  // else the same: what is missing may come back
     return true;
 }
 

@@ -83,6 +83,7 @@ struct PlacedObject {
 // 8-bit images keep their bytes; float images (.hdr, .exr) are linear.
 struct ImageDescription {
     std::string name;
+    std::filesystem::path file = {};  // empty = it stands in the scene file or in a buffer
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgba8;  // 4 bytes a texel, or
     std::vector<float> rgba32f;  // 4 floats a texel; exactly one of the two is filled
@@ -113,6 +114,7 @@ struct SceneObjects {
 
 struct SceneDescription : SceneObjects {
     std::filesystem::path file, folder;
+    std::vector<std::filesystem::path> buffer_files;  // of glTF buffers
     std::vector<ClassFileDescription> class_files;
     std::map<std::string, nlohmann::json> spectra;  // named spectral values
     std::vector<ImageDescription> images;

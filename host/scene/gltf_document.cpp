@@ -178,7 +178,8 @@ void load_buffers(GltfImport& import) {
         } else if (is_data_uri(text_value(*uri))) {
             bytes = import.decoded.emplace_back(decode_data_uri(*uri));
         } else {
-            bytes = octets(import.files.emplace_back(read_whole_file(resolve_uri(import, *uri))));
+            const auto& file = import.scene.buffer_files.emplace_back(resolve_uri(import, *uri));
+            bytes = octets(import.files.emplace_back(read_whole_file(file)));
         }
         if (bytes.size() < length)
             fail_at(buffer, "is truncated: byteLength says {}, there are {} bytes", length, bytes.size());

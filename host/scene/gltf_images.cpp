@@ -76,7 +76,9 @@ ImageDescription decode_gltf_image(const GltfImport& import, uint32_t gltf_image
         image = decode_image(decode_data_uri(*uri), message_at(*uri, "data"));
     } else {
         std::string where = message_at(*uri, text_value(*uri));
-        image = decode_image(octets(read_whole_file(resolve_uri(import, *uri))), where);
+        const std::filesystem::path file = resolve_uri(import, *uri);
+        image = decode_image(octets(read_whole_file(file)), where);
+        image.file = file;
     }
     bool is_file = uri && !is_data_uri(text_value(*uri));
     image.name = text(at, "name", is_file ? text_value(*uri) : fmt::format("image {}", gltf_image));

@@ -1,0 +1,38 @@
+#include "host/scene/scene_files.h"
+
+namespace etendue {
+namespace {
+
+using Paths = std::vector<std::filesystem::path>;
+
+void add_named(Paths& files, const nlohmann::json& value, const std::filesystem::path& folder) {
+    std::error_code error;
+    if (value.is_string()) {
+        const std::filesystem::path file = folder / value.get<std::string>();
+        if (std::filesystem::is_regular_file(file, error)) files.push_back(file);
+    }
+    if (value.is_structured())
+        for (const nlohmann::json& part : value) add_named(files, part, folder);
+}
+
+}  // namespace
+
+Paths files_of(const SceneDescription& scene) {
+    Paths files = scene.buffer_files;
+    for (const ImageDescription& image : scene.images)
+        if (!image.file.empty()) files.push_back(image.file);
+    for (const ClassFileDescription& file : scene.class_files) files.push_back(scene.folder / file.file);
+    const auto add = [&](const nlohmann::json& value) { add_named(files, value, scene.folder); };
+    for (const auto& [name, spectrum] : scene.spectra) add(spectrum);
+    for (const MediumDescription& medium : scene.media) add(medium.medium.parameters);
+    for (const MaterialDescription& material : scene.materials) {
+        add(material.surface.parameters);
+        if (material.emission) add(material.emission->value), add(material.emission->spectrum);
+    }
+    for (const auto* objects : {&scene.shapes, &scene.lights, &scene.receivers, &scene.elements})
+        for (const PlacedObject& object : *objects) add(object.object.parameters);
+    if (scene.environment) add(scene.environment->parameters);
+    return files;
+}
+
+}  // namespace etendue
