@@ -90,23 +90,95 @@ TEST_CASE("P draws paths of light over the picture") {
     CHECK(view.close().err == "");
 }
 
-TEST_CASE("a ball stands where one types it in") {
-    ViewedScene view(two_balls, words_with("640x480"));
-    const std::string elsewhere = replaced(two_balls, "[-0.8, 0, 0]", "[-0.2, 0, 0]");
-    const Image image = headless_image(elsewhere, "640x480");
-    // The panel's rows, of a display of 96 dpi.
-    const auto click = [&](int x, int y) {
+namespace {
+
+// A window of 640 x 480 pixels, at 96 dpi, with all sections of its panel closed.
+struct OpenPanel {
+    OpenPanel() : view(two_balls, words_with("640x480")) {
+        REQUIRE(view.x.wait_until(
+            [](const Screenshot& shot) { return shot.at(635, 5)[0] > 200 && headers(shot).size() >= 2; }));
+        for (size_t i = 0; i < 3; ++i) click(200, headers(view.x.screenshot()).at(i));  // open at first
+        REQUIRE(view.x.wait_until([](const Screenshot& shot) { return headers(shot).size() == 6; }));
+    }
+    // Middles of the headers of sections, from the top: bars of one colour across the panel.
+    static std::vector<int> headers(const Screenshot& shot) {
+        std::vector<int> middles;
+        int first = 0;
+        for (int y = 30; y < shot.height; ++y) {  // below its title
+            const auto is_bar = [&](int at) {
+                const uint8_t* c = shot.at(280, at);
+                return c[2] > c[0] + 35 && c[2] > c[1] + 15;
+            };
+            if (is_bar(y) && !is_bar(y - 1)) first = y;
+            if (!is_bar(y) && is_bar(y - 1) && y - first > 12) middles.push_back((first + y) / 2);
+        }
+        return middles;
+    }
+    void click(int x, int y) {
         view.x.move(x, y);
         std::this_thread::sleep_for(std::chrono::milliseconds(150));
         view.x.press(1);
         std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    }
+    // Opens one; where its header is.
+    int open(size_t section) {
+        const int y = headers(view.x.screenshot()).at(section);
+        click(200, y);
+        return y;
+    }
+    ViewedScene view;
+};
+constexpr size_t rays_section = 4, objects_section = 5;
+constexpr int right_of_panel = 320;
+
+double changed_right_of_panel(const Screenshot& a, const Screenshot& b) {
+    size_t changed = 0, all = 0;
+    for (int y = 0; y < a.height; ++y)
+        for (int x = right_of_panel; x < a.width; ++x, ++all)
+            for (int c = 0; c < 3; ++c)
+                if (std::abs(a.at(x, y)[c] - b.at(x, y)[c]) > 12) {
+                    ++changed;
+                    break;
+                }
+    return double(changed) / double(all);
+}
+
+}  // namespace
+
+TEST_CASE("the panel chooses the paths that are drawn by what happened to them") {
+    OpenPanel panel;
+    XServer& x = panel.view.x;
+    const int rays = panel.open(rays_section);
+    panel.click(60, rays + 134);  // "that were"
+    const Screenshot none = x.screenshot();
+    x.key("p");
+    const auto becomes = [&](const auto& is_right) {
+        return x.wait_until(
+            [&](const Screenshot& shot) { return is_right(changed_right_of_panel(shot, none)); }, 20);
     };
-    REQUIRE(view.x.wait_until([](const Screenshot& shot) { return shot.at(635, 5)[0] > 200; }));
-    for (const int y : {47, 70, 93}) click(200, y);  // render, film and camera are closed
-    click(200, 162);                                 // objects
-    click(80, 233), click(100, 250);                 // places, the first of them
+    REQUIRE(becomes([](double share) { return share > 0.01; }));
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    const double all = changed_right_of_panel(x.screenshot(), none);
+    const int reflected = rays + 154, refracted = rays + 177;
+    panel.click(47, refracted);  // nothing here refracts
+    CHECK(becomes([](double share) { return share == 0; }));
+    panel.click(47, reflected);  // or that: not those that miss everything
+    CHECK(becomes([&](double share) { return share > 0.01 && share < 0.9 * all; }));
+    panel.click(47, reflected), panel.click(47, refracted);
+    CHECK(becomes([&](double share) { return share > 0.95 * all; }));
+    CHECK(panel.view.close().err == "");
+}
+
+TEST_CASE("a ball stands where one types it in") {
+    OpenPanel panel;
+    ViewedScene& view = panel.view;
+    const std::string elsewhere = replaced(two_balls, "[-0.8, 0, 0]", "[-0.2, 0, 0]");
+    const Image image = headless_image(elsewhere, "640x480");
+    const int objects = panel.open(objects_section);
+    // Its rows: places, the first of them, and x of its translation, to be typed in.
+    panel.click(80, objects + 71), panel.click(100, objects + 88);
     view.x.hold("Control_L", true);
-    click(80, 270);  // x of its translation, to be typed in
+    panel.click(80, objects + 108);
     view.x.hold("Control_L", false);
     for (const char* key : {"minus", "0", "period", "2"}) view.x.key(key);
     view.x.hold("Return", true);  // for some frames, which is how the panels look at keys
