@@ -52,19 +52,33 @@ glm::dvec3 weighted_sum(const SpectralTable& s, const std::array<glm::dvec3, spe
 
 double place(int i) { return double(i) / (spectrum_samples - 1); }
 
+// Every fifth nanometre, which is enough of what is smooth: where, and the weight there.
+struct CoarseObserver {
+    static constexpr int step = 5, samples = (spectrum_samples - 1) / step + 1;
+    static_assert((samples - 1) * step == spectrum_samples - 1);
+    std::array<double, samples> t;
+    std::array<glm::dvec3, samples> weight;
+
+    CoarseObserver() {
+        for (int i = 0; i < samples; ++i) {
+            const bool is_end = i == 0 || i == samples - 1;
+            t[i] = place(i * step);
+            weight[i] = observer().factor[i * step] * (is_end ? 0.25 * step : 0.5 * step);
+        }
+    }
+};
+
 // The colour of a smooth spectrum under D65, and how it changes with the coefficients (columns).
 glm::dvec3 smooth_color(const glm::dvec3& c, glm::dmat3& derivative) {
-    glm::dvec3 color(0);
-    derivative = glm::dmat3(0);
-    constexpr int step = 5;  // nm; all is smooth
-    for (int i = 0; i < spectrum_samples; i += step) {
-        const double t = place(i), x = (c.x * t + c.y) * t + c.z, r = 1 / std::sqrt(1 + x * x);
-        const bool is_end = i == 0 || i == spectrum_samples - 1;
-        const glm::dvec3 weight = observer().factor[i] * (is_end ? 0.25 * step : 0.5 * step);
-        const glm::dvec3 slope = weight * (r * r * r);
-        color += weight * (1 + x * r);
-        derivative[0] += slope * (t * t), derivative[1] += slope * t, derivative[2] += slope;
+    static const CoarseObserver at;
+    glm::dvec3 color(0), by_x(0), by_y(0), by_z(0);  // not behind a reference: they stay in registers
+    for (int i = 0; i < at.samples; ++i) {
+        const double t = at.t[i], x = (c.x * t + c.y) * t + c.z, r = 1 / std::sqrt(1 + x * x);
+        const glm::dvec3 slope = at.weight[i] * (r * r * r);
+        color += at.weight[i] * (1 + x * r);
+        by_x += slope * (t * t), by_y += slope * t, by_z += slope;
     }
+    derivative = glm::dmat3(by_x, by_y, by_z);
     return color;
 }
 
