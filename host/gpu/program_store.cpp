@@ -26,11 +26,18 @@ ProgramStore::~ProgramStore() {
 }
 
 void ProgramStore::expect(Device& device, std::vector<ExpectedProgram> programs) {
+    if (thread_.joinable()) thread_.join();
+    std::erase_if(programs, [&](const ExpectedProgram& p) { return programs_.contains(p.key); });
     std::sort(programs.begin(), programs.end(),
               [](const auto& a, const auto& b) { return size_of(a) > size_of(b); });
     expected_.assign(programs.begin(), programs.end());
     begin_next();
     thread_ = std::thread([this, &device] { make_expected(device); });
+}
+
+bool ProgramStore::is_making() {
+    const std::lock_guard lock(mutex_);
+    return being_made_.has_value();
 }
 
 void ProgramStore::make_expected(Device& device) {

@@ -28,8 +28,10 @@ class ProgramStore {
     ProgramStore(const ProgramStore&) = delete;
 
     // Makes programs on a thread of its own, since drivers take tenths of a second for the large ones; those
-    // with the most code first. What cannot be made is left to those who ask for it. Once a store.
+    // with the most code first. What cannot be made is left to those who ask for it. Not while it is making
+    // some.
     void expect(Device& device, std::vector<ExpectedProgram> programs);
+    bool is_making();
     // null = none: the caller makes it. Waits for one that is being made; one that is not begun is the
     // caller's.
     std::shared_ptr<const Program> find(uint64_t key);

@@ -20,6 +20,7 @@ constexpr double resting_seconds = 0.25;  // that the first pass of a picture at
 constexpr double slice_seconds = 0.1;     // of passes between two pictures
 constexpr uint32_t coarsest_step = 16;
 constexpr size_t most_names = 1000;
+constexpr const char* pilot_message = "choosing the algorithm: a pilot renders both ways";
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -162,6 +163,12 @@ bool PreviewWorker::work(const PreviewRequest& request) {
                              current_->wants_errors != request.wants_errors ||
                              current_->wants_depth != request.wants_depth;
     current_ = request;
+    look_at_pilot();
+    const bool has_come_to_rest = !request.moving && !request.paused && step_ == 1 && renderer_->passes() > 1;
+    if (has_come_to_rest && request.algorithm == Algorithm::automatic) {
+        begin_pilot(request);
+        use_choice(request);
+    }
     const uint64_t all = options_.passes.value_or(UINT64_MAX);
     const bool at_rest =
         (request.paused && renderer_->passes() > 0) || (step_ == 1 && renderer_->passes() >= all);
@@ -170,7 +177,6 @@ bool PreviewWorker::work(const PreviewRequest& request) {
         update_status(true);
         return false;
     }
-    if (!request.moving && choose_algorithm_at_rest(request)) return true;
 
     const auto start = Clock::now();
     const uint64_t rays = all_rays(renderer_->counters());
@@ -260,19 +266,34 @@ void PreviewWorker::restart(uint32_t step) {
     aovs_ = {};
 }
 
-bool PreviewWorker::choose_algorithm_at_rest(const PreviewRequest& request) {
-    if (request.algorithm != Algorithm::automatic || choice_ || step_ > 1 || renderer_->passes() < 2)
-        return false;
-    say("choosing the algorithm: a pilot renders both ways");
+void PreviewWorker::begin_pilot(const PreviewRequest& request) {
+    if (choice_ || pilot_) return;
+    choice_ = choose_without_pilot(*device_, *scene_);
+    if (choice_) return;
+    say(pilot_message);
     const uint32_t receiver = std::min(request.receiver, uint32_t(scene_->receivers.size() - 1));
-    choice_ = choose_algorithm(*device_, *scene_, settings_for(*scene_, receiver, request));
-    if (choice_->algorithm != Algorithm::backward) {
-        renderer_.reset();
-        renderer_ = make_renderer(*scene_, receiver, request, choice_);
-        restart(1);
+    pilot_ = std::make_unique<BackgroundPilot>(options_, settings_for(*scene_, receiver, request), receiver,
+                                               scene_->receivers[receiver]);
+}
+
+void PreviewWorker::look_at_pilot() {
+    if (!pilot_ || !pilot_->has_ended() || device_->programs->is_making()) return;
+    if (!pilot_->was_given_up()) {
+        choice_ = pilot_->choice();
+        device_->programs->expect(*device_, pilot_->programs());
     }
-    say("");
-    return true;
+    pilot_.reset();
+    if (status_.message == pilot_message) say("");
+}
+
+// Has the renderer of the choice, once its programs are made, take the place of the one there is.
+void PreviewWorker::use_choice(const PreviewRequest& request) {
+    if (!choice_ || device_->programs->is_making() || renderer_->choice().algorithm == choice_->algorithm)
+        return;
+    const uint32_t receiver = std::min(request.receiver, uint32_t(scene_->receivers.size() - 1));
+    renderer_.reset();
+    renderer_ = make_renderer(*scene_, receiver, request, choice_);
+    restart(step_for(resting_seconds, request));
 }
 
 void PreviewWorker::run_task(const std::function<void(PreviewScene&)>& task) {
@@ -292,6 +313,7 @@ bool PreviewWorker::reload_changed() {
         std::shared_ptr<Scene> next = live_->reload();
         choose_receiver(*next, options_);
         choice_.reset();
+        if (pilot_) pilot_->give_up();
         return next;
     });
     if (!status_.is_error) watch_files();  // else the same: what is missing may come back

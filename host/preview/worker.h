@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "host/commands.h"
+#include "host/preview/background_pilot.h"
 #include "host/preview/preview.h"
 #include "host/preview/start_programs.h"
 #include "host/preview/watched_files.h"
@@ -50,7 +51,9 @@ class PreviewWorker {
                                             const std::optional<AlgorithmChoice>& choice);
     uint32_t step_for(double seconds, const PreviewRequest& request) const;
     void restart(uint32_t step);
-    bool choose_algorithm_at_rest(const PreviewRequest& request);
+    void begin_pilot(const PreviewRequest& request);
+    void look_at_pilot();
+    void use_choice(const PreviewRequest& request);
     void publish(const PreviewRequest& request);
     void look_at_errors(const PreviewRequest& request);
     const Image& aovs(const PreviewPicture& picture);
@@ -74,6 +77,7 @@ class PreviewWorker {
     std::shared_ptr<const PreviewPicture> picture_;
     std::optional<PreviewRequest> current_;       // what the film shows
     std::optional<AlgorithmChoice> choice_;       // that --algorithm auto came to, for this scene
+    std::unique_ptr<BackgroundPilot> pilot_;      // while it runs
     Algorithm algorithm_ = Algorithm::automatic;  // that the renderer was made for
     uint32_t capacity_ = 0;                       // pixels that the renderer has room for
     uint32_t step_ = 0;

@@ -26,7 +26,10 @@ struct Pilot {
     double seconds = 0;   // of one pass
 };
 
-Pilot run_pilot(Device& device, Scene& scene, RenderSettings settings, Algorithm algorithm, double paths) {
+using Interrupt = std::function<bool()>;
+
+Pilot run_pilot(Device& device, Scene& scene, RenderSettings settings, Algorithm algorithm, double paths,
+                const Interrupt& interrupt) {
     const double scale = double(pilot_pixels) / std::max(settings.width, settings.height);
     settings.width = std::max(1u, uint32_t(settings.width * std::min(1.0, scale)));
     settings.height = std::max(1u, uint32_t(settings.height * std::min(1.0, scale)));
@@ -35,7 +38,10 @@ Pilot run_pilot(Device& device, Scene& scene, RenderSettings settings, Algorithm
     settings.spectral_bins = 0;
     settings.seed = ~settings.seed;  // independent of the image to come
     Renderer renderer(device, scene, settings);
-    for (uint32_t i = 0; i < pilot_passes; ++i) renderer.render_passes(1);
+    for (uint32_t i = 0; i < pilot_passes; ++i) {
+        if (interrupt && interrupt()) return {};
+        renderer.render_passes(1);
+    }
     Pilot pilot;
     pilot.image = renderer.develop();
     const double error = estimated_relative_error(pilot.image);
@@ -64,30 +70,40 @@ double best_paths(const Pilot& one, const Pilot& four) {
 
 }  // namespace
 
-AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings) {
+std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene) {
     AlgorithmChoice choice;
-    choice.algorithm = Algorithm::backward;
     if (!(scene.power > 0)) {
         choice.reason = "no light";
     } else if (!find_narrow_materials(device, scene)) {
         choice.reason = "no surface is smooth or nearly so";
     } else if (!has_compact_light(device, scene)) {
         choice.reason = "no light is compact";
+    } else {
+        return {};
     }
-    if (!choice.reason.empty()) return choice;
+    return choice;
+}
 
+AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings,
+                                 const Interrupt& interrupt) {
+    if (const auto choice = choose_without_pilot(device, scene)) return *choice;
     const auto start = std::chrono::steady_clock::now();
-    const Pilot backward = run_pilot(device, scene, settings, Algorithm::backward, 1);
-    const Pilot one = run_pilot(device, scene, settings, Algorithm::bidirectional, 1);
+    const auto pilot = [&](Algorithm algorithm, double paths) {
+        return run_pilot(device, scene, settings, algorithm, paths, interrupt);
+    };
+    AlgorithmChoice choice;
+    const Pilot backward = pilot(Algorithm::backward, 1), one = pilot(Algorithm::bidirectional, 1);
+    if (interrupt && interrupt()) return choice;
     const bool agreed = agree(backward.image, one.image);
     const double ratio = one.variance * one.seconds / (backward.variance * backward.seconds);
     const std::string measured = fmt::format("error² x time of bidirectional is {:.3g} of backward", ratio);
     if (agreed && !(ratio < clear_win)) {
         choice.reason = "a pilot agrees both ways, and " + measured;
     } else {
+        const Pilot four = pilot(Algorithm::bidirectional, 4);
+        if (interrupt && interrupt()) return choice;
         choice.algorithm = Algorithm::bidirectional;
-        choice.forward_paths =
-            best_paths(one, run_pilot(device, scene, settings, Algorithm::bidirectional, 4));
+        choice.forward_paths = best_paths(one, four);
         choice.reason = agreed ? "in a pilot " + measured : "in a pilot backward rays alone missed light";
     }
     choice.pilot_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

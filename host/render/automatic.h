@@ -1,5 +1,7 @@
 // --algorithm auto: what a scene is rendered with, and why.
 #pragma once
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "host/render/renderer.h"
@@ -15,6 +17,10 @@ namespace etendue {
 //
 // The choice depends on measured times, by powers of two in the number of paths and never in what the image
 // converges to.
-AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings);
+// `interrupt` is asked between passes of the pilot; once it says true the choice means nothing.
+AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings,
+                                 const std::function<bool()>& interrupt = {});
+// The choice where it takes no pilot.
+std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene);
 
 }  // namespace etendue

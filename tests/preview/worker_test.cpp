@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <chrono>
+
 #include <cmath>
 
 #include "host/error.h"
@@ -266,6 +268,41 @@ TEST_CASE("a start notes its programs, and the next one of the same scene has th
     for (const KernelReport& kernel : again.status().kernels)
         if (kernel.name == "trace_paths") CHECK(kernel.from_store);  // the largest, which is begun first
     CHECK(again.picture()->radiance.size() > 0);
+}
+
+TEST_CASE("pictures of a camera that moves go on while a pilot chooses the algorithm") {
+    auto scene = nlohmann::json::parse(two_balls);  // a glass ball in the light of a lamp
+    scene["materials"][0] = {
+        {"extensions", {{"ETD_optics", {{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}}}}};
+    scene["extensions"]["ETD_optics"]["media"] = {
+        {{"name", "glass"}, {"class", "homogeneous"}, {"ior", 1.5}}};
+    scene["extensions"]["ETD_optics"]["environment"]["radiance"] = 0.01;
+    scene["nodes"].push_back(
+        {{"translation", {-0.8, 3, 0}}, {"extensions", {{"ETD_optics", {{"light", {{"class", "point"}}}}}}}});
+    scene["scenes"][0]["nodes"].push_back(5);
+    Viewed viewed(scene.dump());
+    viewed.request.algorithm = Algorithm::automatic;
+    const auto& status = viewed.worker->status();
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
+    const auto in_time = [&] { return std::chrono::steady_clock::now() < end; };
+    const auto has_pilot = [&] { return status.message.find("pilot") != std::string::npos; };
+    for (int i = 0; i < 100 && !has_pilot(); ++i) viewed.worker->work(viewed.request);
+    REQUIRE(has_pilot());
+
+    glm::dmat4 placement = status.receivers[0].placement;
+    viewed.request.moving = true;
+    int pictures = 0;
+    for (; has_pilot() && in_time(); placement[3].x += 0.001) {
+        viewed.request.placement = placement;
+        viewed.worker->work(viewed.request);
+        pictures += viewed.worker->picture()->request == viewed.request;
+    }
+    CHECK(pictures >= 10);
+    CHECK(status.choice.algorithm == Algorithm::backward);
+    viewed.request.moving = false;
+    while (status.choice.algorithm == Algorithm::backward && in_time()) viewed.worker->work(viewed.request);
+    CHECK(status.choice.algorithm == Algorithm::bidirectional);
+    CHECK(status.message == "");
 }
 
 TEST_CASE("a step of the mouse breaks off a fine picture, not a coarse one of a view that moves already") {
