@@ -10,6 +10,8 @@
 namespace etendue {
 namespace {
 
+constexpr const char* color_spectra_line = "spectra of colors\n";  // no number: programs end there
+
 // Keys of programs say nothing of the shaders in the binary: those are part of this one.
 uint64_t key_of(const ViewOptions& options) {
     std::error_code error;
@@ -42,11 +44,14 @@ std::vector<ExpectedProgram> StartPrograms::read() const {
     return programs;
 }
 
-void StartPrograms::write(const std::vector<KernelReport>& kernels) const {
+bool StartPrograms::needs_color_spectra() const { return read_text(file_).ends_with(color_spectra_line); }
+
+void StartPrograms::write(const Scene& scene) const {
     std::string text;
-    for (const KernelReport& kernel : kernels)
+    for (const KernelReport& kernel : scene.kernels)
         if (!kernel.spirv.empty())
             text += fmt::format("{:016x} {}\n", kernel.key, kernel.spirv.filename().string());
+    if (scene.reads_color_spectra) text += color_spectra_line;
     if (file_.empty() || text == read_text(file_)) return;
     try {
         write_atomically(file_, std::as_bytes(std::span(text)));

@@ -1,5 +1,5 @@
-// Which programs a window on a scene needed for its first picture: noted in the folder of compiled kernels,
-// so that the next start has them made while it still reads the scene.
+// Which programs, and whether spectra of colours, a window on a scene needed for its first picture: noted in
+// the folder of compiled kernels, so that the next start has them made while it still reads the scene.
 #pragma once
 #include <vector>
 
@@ -13,7 +13,8 @@ class StartPrograms {
   public:
     explicit StartPrograms(const ViewOptions& options);
     std::vector<ExpectedProgram> read() const;  // those of the last start; none where there was none
-    void write(const std::vector<KernelReport>& kernels) const;
+    bool needs_color_spectra() const;           // host/spectra/color.h
+    void write(const Scene& scene) const;
 
   private:
     std::filesystem::path folder_, file_;

@@ -11,6 +11,7 @@
 #include "host/preview/receiver_placement.h"
 #include "host/render/automatic.h"
 #include "host/scene/scene_files.h"
+#include "host/spectra/color.h"
 
 namespace etendue {
 namespace {
@@ -59,6 +60,7 @@ PreviewWorker::PreviewWorker(const ViewOptions& options, std::function<bool()> i
 PreviewWorker::~PreviewWorker() = default;
 
 void PreviewWorker::open() {
+    if (start_programs_.needs_color_spectra()) color_spectra_ = std::jthread([] { color_spectra(); });
     device_ = create_device({options_.device, false});
     device_->programs->expect(*device_, start_programs_.read());
     status_.device = device_->description.name;
@@ -194,7 +196,7 @@ bool PreviewWorker::work(const PreviewRequest& request) {
     status_.rays_per_second = double(all_rays(renderer_->counters()) - rays) / taken;
     publish(request);
     update_status(false);
-    if (!std::exchange(has_started_, true)) start_programs_.write(scene_->kernels);
+    if (!std::exchange(has_started_, true)) start_programs_.write(*scene_);
     has_drawn_ = true;
     return true;
 }

@@ -5,6 +5,7 @@
 // they are refined to full size, and then for as long as one looks.
 #pragma once
 #include <functional>
+#include <thread>
 
 #include "host/commands.h"
 #include "host/preview/background_pilot.h"
@@ -66,7 +67,8 @@ class PreviewWorker {
     const std::function<bool()> interrupt_;
     const std::function<void()> changed_;
     const StartPrograms start_programs_;
-    bool has_started_ = false;  // there was a picture
+    std::jthread color_spectra_;  // computes them ahead
+    bool has_started_ = false;    // there was a picture
     std::unique_ptr<Device> device_;
     std::unique_ptr<LiveScene> live_;
     std::shared_ptr<Scene> scene_;  // the renderer's

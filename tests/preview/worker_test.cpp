@@ -268,6 +268,19 @@ TEST_CASE("a start notes its programs, and the next one of the same scene has th
     for (const KernelReport& kernel : again.status().kernels)
         if (kernel.name == "trace_paths") CHECK(kernel.from_store);  // the largest, which is begun first
     CHECK(again.picture()->radiance.size() > 0);
+
+    CHECK(!StartPrograms(viewed.options).needs_color_spectra());
+    auto scene = nlohmann::json::parse(two_balls);
+    scene["materials"][0] = {{"pbrMetallicRoughness", {{"baseColorFactor", {0.8, 0.1, 0.1, 1}}}}};
+    write_text(viewed.folder / "painted.gltf", scene.dump());
+    other.scene = viewed.folder / "painted.gltf";
+    PreviewWorker painted(other, {}, [] {});
+    painted.open();
+    CHECK(painted.work(viewed.request));
+    CHECK(StartPrograms(other).needs_color_spectra());
+    CHECK(!StartPrograms(other).read().empty());
+    for (const ExpectedProgram& program : StartPrograms(other).read())
+        CHECK(std::filesystem::exists(program.spirv));
 }
 
 TEST_CASE("pictures of a camera that moves go on while a pilot chooses the algorithm") {
