@@ -159,7 +159,8 @@ TEST_CASE("forward flux through bodies that bend, disperse and scatter: what is 
 TEST_CASE("algorithms agree: graded index with priorities, dispersion, fog and around the camera" *
           doctest::test_suite("long")) {
     Comparison c;
-    c.backward = 192, c.forward = 96, c.bidirectional = 48;
+    c.backward = 192, c.bidirectional = 48;
+    c.forward = 0;  // everything is seen through a bend, so that forward rays alone bring nothing
     c.largest_error = 0.01;
     check_against_backward(room_of_everything(), c);
 }
