@@ -348,6 +348,8 @@ void PreviewWorker::update_status(bool at_rest) {
     status_.step = step_;
     status_.at_rest = at_rest;
     status_.choice = renderer_->choice();
+    if (algorithm_ == Algorithm::automatic && choice_ && choice_->algorithm == status_.choice.algorithm)
+        status_.choice = *choice_;  // with its reason
     status_.schedule = renderer_->schedule();
     status_.seconds = renderer_->seconds();
     status_.timings = renderer_->timings();

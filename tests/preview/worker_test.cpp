@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <chrono>
+#include <thread>
 
 #include <cmath>
 
@@ -283,8 +284,11 @@ TEST_CASE("a start notes its programs, and the next one of the same scene has th
         CHECK(std::filesystem::exists(program.spirv));
 }
 
-TEST_CASE("pictures of a camera that moves go on while a pilot chooses the algorithm") {
-    auto scene = nlohmann::json::parse(two_balls);  // a glass ball in the light of a lamp
+namespace {
+
+// A glass ball in the light of a lamp: its caustic needs forward rays.
+std::string glass_ball() {
+    auto scene = nlohmann::json::parse(two_balls);
     scene["materials"][0] = {
         {"extensions", {{"ETD_optics", {{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}}}}};
     scene["extensions"]["ETD_optics"]["media"] = {
@@ -293,29 +297,64 @@ TEST_CASE("pictures of a camera that moves go on while a pilot chooses the algor
     scene["nodes"].push_back(
         {{"translation", {-0.8, 3, 0}}, {"extensions", {{"ETD_optics", {{"light", {{"class", "point"}}}}}}}});
     scene["scenes"][0]["nodes"].push_back(5);
-    Viewed viewed(scene.dump());
-    viewed.request.algorithm = Algorithm::automatic;
-    const auto& status = viewed.worker->status();
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(120);
-    const auto in_time = [&] { return std::chrono::steady_clock::now() < end; };
-    const auto has_pilot = [&] { return status.message.find("pilot") != std::string::npos; };
-    for (int i = 0; i < 100 && !has_pilot(); ++i) viewed.worker->work(viewed.request);
-    REQUIRE(has_pilot());
+    return scene.dump();
+}
 
+bool has_pilot(const Viewed& viewed) {
+    return viewed.worker->status().message.find("pilot") != std::string::npos;
+}
+
+// Works until the pilot has begun.
+void begin_pilot(Viewed& viewed) {
+    viewed.request.algorithm = Algorithm::automatic;
+    for (int i = 0; i < 100 && !has_pilot(viewed); ++i) viewed.worker->work(viewed.request);
+    REQUIRE(has_pilot(viewed));
+}
+
+// Works until it is so; false after two minutes.
+bool works_until(Viewed& viewed, const std::function<bool()>& is_so) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(2);
+    while (!is_so()) {
+        if (std::chrono::steady_clock::now() > end) return false;
+        if (!viewed.worker->work(viewed.request)) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("pictures of a camera that moves go on while a pilot chooses the algorithm") {
+    Viewed viewed(glass_ball());
+    const auto& status = viewed.worker->status();
+    begin_pilot(viewed);
     glm::dmat4 placement = status.receivers[0].placement;
     viewed.request.moving = true;
     int pictures = 0;
-    for (; has_pilot() && in_time(); placement[3].x += 0.001) {
-        viewed.request.placement = placement;
-        viewed.worker->work(viewed.request);
+    CHECK(works_until(viewed, [&] {
         pictures += viewed.worker->picture()->request == viewed.request;
-    }
+        placement[3].x += 0.001;
+        viewed.request.placement = placement;
+        return !has_pilot(viewed);
+    }));
     CHECK(pictures >= 10);
     CHECK(status.choice.algorithm == Algorithm::backward);
     viewed.request.moving = false;
-    while (status.choice.algorithm == Algorithm::backward && in_time()) viewed.worker->work(viewed.request);
-    CHECK(status.choice.algorithm == Algorithm::bidirectional);
+    CHECK(works_until(viewed, [&] { return status.choice.algorithm == Algorithm::bidirectional; }));
+    CHECK(status.choice.reason.find("pilot") != std::string::npos);
     CHECK(status.message == "");
+}
+
+TEST_CASE("what a pilot finds of a scene that is read again meanwhile does not count") {
+    Viewed viewed(glass_ball());
+    const auto& choice = viewed.worker->status().choice;
+    begin_pilot(viewed);
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until it has read the scene as it was
+    write_text(viewed.folder / "scene.gltf", two_balls);
+    for (int i = 0; i < 2; ++i) viewed.worker->reload_changed();
+    CHECK(works_until(viewed, [&] {
+        return choice.algorithm != Algorithm::backward || choice.reason.find("smooth") != std::string::npos;
+    }));
+    CHECK(choice.algorithm == Algorithm::backward);
 }
 
 TEST_CASE("a step of the mouse breaks off a fine picture, not a coarse one of a view that moves already") {
