@@ -12,6 +12,10 @@
 // that of the keys, whatever the order in which vertices were stored.
 #include "lib/light_vertices.glsl"
 
+// Vertices that merge with rays (lib/beam_query.glsl) lie in cells as if their radius were so many times as large, since most
+// cells of a ray are empty. 8 was the fastest of 2, 4, 8 and 16.
+const float BEAM_CELL_SCALE = 8.0;
+
 struct GridPlace {
     uint bucket, rank;  // rank: entered before it in the same bucket
     uint key;

@@ -62,6 +62,29 @@ const char* const query_text = R"(
     }
 )";
 
+const char* const rays_text = R"(
+    // Points in pairs: the ends of rays. Found as above; the caller has defined merge_radius.
+    layout(scalar, set = 0) writeonly buffer Found { uint found[]; };
+    #include "lib/constants.glsl"
+    #include "lib/beam_query.glsl"
+    void main() {
+        uint lanes = gl_NumWorkGroups.x * 64u;
+        for (uint i = gl_GlobalInvocationID.x; i < count; i += lanes) {
+            vec3 origin = points[2u * i].position, way = points[2u * i + 1u].position - origin;
+            float far = length(way);
+            vec3 direction = way / far;
+            BeamQuery q;
+            uint vertex, number = 0u, row = i * (1u + room);
+            begin_beam(q, origin, direction, far, points[2u * i].radius);
+            while (next_on_beam(q, vertex)) {
+                if (number < room) found[row + 1u + number] = light_vertices[vertex].instance;
+                number++;
+                found[row] = number;
+            }
+        }
+    }
+)";
+
 // What merging does with a neighbour on a diffuse surface (Georgiev et al. 2012), in outline.
 const char* const merge_text = R"(
     #include "lib/constants.glsl"
@@ -122,11 +145,22 @@ void VertexMapProbe::store(const std::vector<GridPoint>& points, uint32_t groups
 
 std::vector<std::vector<uint32_t>> VertexMapProbe::neighbours(const std::vector<GridPoint>& points,
                                                               uint32_t room) {
-    const auto count = uint32_t(points.size());
+    return found_by("query_points", query_text, points, uint32_t(points.size()), room);
+}
+
+std::vector<std::vector<uint32_t>> VertexMapProbe::along(const std::vector<GridPoint>& ends,
+                                                         const std::string& radius, uint32_t room) {
+    return found_by("query_rays", "float merge_radius(vec3 p) { return " + radius + "; }\n" + rays_text, ends,
+                    uint32_t(ends.size() / 2), room);
+}
+
+std::vector<std::vector<uint32_t>> VertexMapProbe::found_by(const std::string& name, const std::string& text,
+                                                            const std::vector<GridPoint>& points,
+                                                            uint32_t count, uint32_t room) {
     const Buffer in = create_buffer(device_, points, "points");
     Buffer found(device_, uint64_t(count) * (1 + room) * 4, "found");
     found.fill(0);
-    const Kernel query = kernel("query_points", query_text, {{"Points", &in}, {"Found", &found}});
+    const Kernel query = kernel(name, text, {{"Points", &in}, {"Found", &found}});
     CommandList commands(device_);
     commands.dispatch(query, std::min((count + 63) / 64, max_groups), {{"count", count}, {"room", room}});
     commands.run();

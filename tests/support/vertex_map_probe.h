@@ -26,6 +26,8 @@ struct GridPoint {
     uint32_t flags = light_vertex_merges;
 };
 
+constexpr float beam_cell_scale = 8;  // BEAM_CELL_SCALE in shaders/lib/vertex_grid.glsl
+
 class VertexMapProbe {
   public:
     VertexMapProbe(Device& device, uint32_t capacity);
@@ -35,6 +37,11 @@ class VertexMapProbe {
                KernelTimings* timings = nullptr);
     // Keys of the vertices within the radius of each point, in the order of the walk.
     std::vector<std::vector<uint32_t>> neighbours(const std::vector<GridPoint>& points, uint32_t room = 256);
+    // Keys of the vertices whose own radius a ray reaches; `ends`: of rays, in pairs, the first with the slope of
+    // the radius. Vertices must have been stored with a radius of beam_cell_scale times theirs; `radius`: GLSL for
+    // theirs at vec3 p.
+    std::vector<std::vector<uint32_t>> along(const std::vector<GridPoint>& ends, const std::string& radius,
+                                             uint32_t room = 256);
     // The same walk with the work of a simple merge for each neighbour; returns neighbours a point.
     double merge(const std::vector<GridPoint>& points, KernelTimings* timings);
 
@@ -45,6 +52,9 @@ class VertexMapProbe {
     Kernel kernel(const std::string& name, const std::string& text, BufferTable buffers);
 
   private:
+    std::vector<std::vector<uint32_t>> found_by(const std::string& name, const std::string& text,
+                                                const std::vector<GridPoint>& points, uint32_t count,
+                                                uint32_t room);
     Device& device_;
 };
 
