@@ -11,15 +11,15 @@ namespace etendue {
 std::string Techniques::backward_defines() const {
     return fmt::format(
         "#define FORWARD 0\n#define HAS_SPLATS {:d}\n#define FORWARD_ONLY {:d}\n#define BIDIRECTIONAL {:d}\n"
-        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n",
-        forward, forward && !bidirectional, bidirectional, connect, merge);
+        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n",
+        forward, forward && !bidirectional, bidirectional, connect, merge, beams);
 }
 
 std::string Techniques::forward_defines() const {
     return fmt::format(
         "#define FORWARD 1\n#define FORWARD_ONLY 0\n#define BIDIRECTIONAL {:d}\n"
-        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n",
-        bidirectional, connect, merge);
+        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n",
+        bidirectional, connect, merge, beams);
 }
 
 namespace {
@@ -69,6 +69,7 @@ Techniques choose_techniques(Device& device, Scene& scene, Algorithm algorithm) 
     t.forward = t.bidirectional || algorithm == Algorithm::forward;
     t.connect = t.bidirectional;
     t.merge = t.bidirectional && find_narrow_materials(device, scene);
+    t.beams = t.merge && scene.features.even_scattering;
     return t;
 }
 

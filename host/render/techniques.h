@@ -13,6 +13,7 @@ struct Techniques {
     bool bidirectional = false;  // backward and forward rays are weighted against each other
     bool connect = false;        // vertices are connected
     bool merge = false;          // vertices are merged
+    bool beams = false;          // … in media that are the same everywhere along rays
     std::string backward_defines() const, forward_defines() const;
 };
 

@@ -58,7 +58,7 @@ Wavefront::Wavefront(Device& device, Scene& scene, Direction direction, const Te
     shadow_queues_ = scene.features.light_count == 0 ? 0 : techniques.connect && !forward ? 2 : 1;
     const uint64_t n = slots, state_bytes = path_bytes(direction, techniques, scene),
                    shadow_bytes = 36 + spectrum_bytes(scene) + (scene.features.scattering ? 4 : 0) +
-                                  (scene.features.body_count > 0 ? 12 : 0);
+                                  (techniques.beams ? 4 : 0) + (scene.features.body_count > 0 ? 12 : 0);
     ray_origins_ = Buffer(device, n * ray_bytes, "RayOrigins");
     ray_directions_ = Buffer(device, n * ray_bytes, "RayDirections");
     path_states_ = Buffer(device, n * state_bytes, "PathStates");

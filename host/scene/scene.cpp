@@ -141,6 +141,7 @@ void SceneCompiler::add_media() {
     for (uint32_t effect : out.read_array<uint32_t>(refs.size())) {
         out_.features.media |= (effect & 3) != 0;
         out_.features.scattering |= (effect & 2) != 0;
+        out_.features.even_scattering |= (effect & 8) != 0;
         out_.features.bending |= (effect & 4) != 0;
     }
     if (!out_.features.scattering) out_.classes.erase(Interface::phase);

@@ -6,6 +6,7 @@
 //   bool     NAME_scatters(R r)                     some of it is scattered. Only then are asked:
 //   FreePath NAME_free_path(R r, MediumRay ray, Spectrum carried, vec2 u, uint seed)   where on the ray light that carries so
 //                                                   much scatters, by two numbers spread evenly over [0,1)
+//   bool     NAME_is_even(R r)                      it scatters and absorbs the same everywhere
 //   float    NAME_mean_extinction(R r, vec3 position)   extinction coefficient of an average lane, 1/m
 //   Spectrum NAME_scattering(R r, vec3 position)    scattering coefficient, 1/m
 //   uint     NAME_phase(R r)                        RecordRef of the phase function
@@ -75,6 +76,16 @@ bool medium_bends(uint ref) {
     bool result = false;
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_bends(name##_record(record_index(ref))); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+bool medium_is_even(uint ref) {
+    bool result = false;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_is_even(name##_record(record_index(ref))); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }

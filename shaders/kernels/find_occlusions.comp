@@ -33,6 +33,9 @@ ShadowRay shadow_ray_of(ShadowState s) {
 #endif
 #if HAS_SCATTERING
     ray.others = s.others;
+#if BEAMS
+    ray.others_apart = s.others_apart;
+#endif
 #endif
     return ray;
 }

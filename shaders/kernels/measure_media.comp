@@ -1,4 +1,5 @@
-// What a medium does to light, one lane a medium: it absorbs or scatters (1), scatters (2), bends it (4). The classes know.
+// What a medium does to light, one lane a medium: it absorbs or scatters (1), scatters (2), bends it (4), scatters the same
+// everywhere (8). The classes know.
 // Reads: media. Writes: one word a medium. Barrier expected: after the dispatch.
 #include "interfaces/medium_optics.glsl"
 
@@ -11,5 +12,6 @@ void main() {
     uint i = first + gl_GlobalInvocationID.x;
     if (i >= count) return;
     uint ref = medium_refs[i];
-    medium_effects[i] = (medium_is_clear(ref) ? 0u : 1u) | (medium_scatters(ref) ? 2u : 0u) | (medium_bends(ref) ? 4u : 0u);
+    medium_effects[i] = (medium_is_clear(ref) ? 0u : 1u) | (medium_scatters(ref) ? 2u : 0u) | (medium_bends(ref) ? 4u : 0u) |
+                        (medium_scatters(ref) && medium_is_even(ref) ? 8u : 0u);
 }

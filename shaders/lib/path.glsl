@@ -5,6 +5,7 @@
 //   BIDIRECTIONAL     estimators from both ends are combined (lib/mis.glsl)
 //   CONNECT_VERTICES  … also by connecting vertices of backward paths with vertices of forward paths
 //   MERGE_VERTICES    … also by merging them
+//   BEAMS             … in media that are the same everywhere along rays
 //   FORWARD_ONLY      what forward rays can bring is brought by nothing else
 #include "lib/bent_step.glsl"
 #include "lib/bodies.glsl"
@@ -12,6 +13,9 @@
 #include "lib/sampler.glsl"
 #include "lib/spectrum.glsl"
 
+#ifndef BEAMS
+#define BEAMS 0
+#endif
 #ifndef HAS_DISPERSION
 #define HAS_DISPERSION 0
 #endif
@@ -69,6 +73,7 @@ const uint PATH_STARTS = 1u;        // no event yet but passing straight on
 const uint PATH_PARALLEL = 2u;      // started by a receiver of parallel rays
 const uint PATH_MONOCHROME = 8u;   // only the hero wavelength is left
 const uint PATH_AFTER_NARROW = 4u;  // the last event was at a narrow surface
+const uint PATH_AFTER_BEAM = 16u;   // … in a medium where rays merge (lib/mis.glsl)
 
 #if HAS_DISPERSION
 // Where wavelengths part the path goes on with the hero alone, which stands for all four (Wilkie et al. 2014, section 3.1, with
@@ -92,6 +97,9 @@ struct ShadowRay {
 #endif
 #if HAS_SCATTERING
     float others;           // of weigh(): the passage is known once the ray is traced
+#if BEAMS
+    float others_apart;     // that need no passage
+#endif
 #endif
 #if FORWARD
     uint pixel;             // that it contributes to
@@ -106,6 +114,9 @@ ShadowRay no_shadow_ray() {
 #endif
 #if HAS_SCATTERING
     ray.others = 0.0;
+#if BEAMS
+    ray.others_apart = 0.0;
+#endif
 #endif
 #if FORWARD
     ray.pixel = 0u;

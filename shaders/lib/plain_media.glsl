@@ -12,6 +12,7 @@
     FreePath name##_free_path(Struct r, MediumRay ray, Spectrum carried, vec2 u, uint seed) {                          \
         return FreePath(false, ray.distance, Spectrum(1), 1.0);                                                        \
     }                                                                                                                  \
+    bool name##_is_even(Struct r) { return false; }                                                                    \
     float name##_mean_extinction(Struct r, vec3 position) { return 0.0; }                                              \
     Spectrum name##_scattering(Struct r, vec3 position) { return Spectrum(0); }                                        \
     uint name##_phase(Struct r) { return NO_RECORD; }

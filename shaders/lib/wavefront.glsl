@@ -62,6 +62,9 @@ struct ShadowState {
 #endif
 #if HAS_SCATTERING
     float others;
+#if BEAMS
+    float others_apart;
+#endif
 #endif
 };
 // Those towards lights or the receiver; behind them, from `slots` on, those of backward paths towards forward vertices.
@@ -205,6 +208,9 @@ void append_shadow_ray(ShadowRay shadow, uint target, uint first, uint counter) 
 #endif
 #if HAS_SCATTERING
                         , shadow.others
+#if BEAMS
+                        , shadow.others_apart
+#endif
 #endif
             );
 }

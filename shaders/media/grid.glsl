@@ -107,6 +107,8 @@ Passage grid_pass(Grid r, MediumRay ray, uint seed) {
     return Passage(left * exp(-extinction * least_column), grid_mean_passage(extinction, column));
 }
 
+bool grid_is_even(Grid r) { return false; }
+
 float grid_mean_extinction(Grid r, vec3 position) {
     return density_at(r.file, position) * brightness(grid_unit_extinction(r));
 }

@@ -26,6 +26,8 @@ FreePath homogeneous_free_path(Homogeneous r, MediumRay ray, Spectrum carried, v
     return sample_free_path(homogeneous_extinction(r), spectrum_value(r.scattering), ray.distance, carried, u);
 }
 
+bool homogeneous_is_even(Homogeneous r) { return true; }
+
 float homogeneous_mean_extinction(Homogeneous r, vec3 position) { return brightness(homogeneous_extinction(r)); }
 
 Spectrum homogeneous_scattering(Homogeneous r, vec3 position) { return spectrum_value(r.scattering); }

@@ -51,7 +51,18 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     bool merges_there = (y.previous & LIGHT_VERTEX_MERGES) != 0u &&
                         (is_narrow(s.material) || is_short_edge(y.position, p.position));
     float merging_there = merges_there ? merge_density(in_volume(there), y.position) : 0.0;
-    float merging_here = is_narrow(there.material) ? mis.merging : 0.0;
+#if BEAMS
+    float merging_apart = 0.0;
+    if (in_volume(there) && merges_along(y.normal)) {
+        merging_there = 0.0;
+        if (merges_there && is_narrow(s.material)) merging_apart = towards_there * beam_density(there, y.position);
+    }
+#endif
+    bool merges_here = is_narrow(there.material);
+#if BEAMS
+    if (mis.along && in_volume(there) && merges_along(y.normal)) merges_here = is_short_edge(p.position, y.position);
+#endif
+    float merging_here = merges_here ? mis.merging : 0.0;
     float connects_there = (y.previous & VERTEX_STARTS) != 0u ? 1.0 : CONNECTION_SHARE;
     float by_backward = towards_there * (merging_there + connects_there * y.vcm + away.pdf_reverse * y.vc);
     float by_forward = towards_here * (merging_here + connects(path) * mis.vcm + reverse * mis.vc);
@@ -60,5 +71,9 @@ ShadowRay connect_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, V
     Spectrum contribution = path.throughput * here.value * y.throughput * away.value *
                             (adjoint_correction(there, light_direction, -direction) * flux / distance_squared *
                              meeting_share(path, y.previous));
-    return shadow_ray(p, s, direction, distance, contribution, (by_backward + by_forward) / CONNECTION_SHARE);
+    ShadowRay shadow = shadow_ray(p, s, direction, distance, contribution, (by_backward + by_forward) / CONNECTION_SHARE);
+#if BEAMS
+    shadow.others_apart = merging_apart / CONNECTION_SHARE;
+#endif
+    return shadow;
 }

@@ -12,6 +12,9 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
     if (is_black(pair.value) || !is_seen_from(s, r.direction) || !(frame > 0.0)) return no_shadow_ray();
     float importance = r.density * pixel_count() / r.pdf;  // of one pixel
     float others = 0.0;
+#if BEAMS
+    if (mis.along) mis.merging = 0.0;  // rays of the receiver do not merge
+#endif
 #if BIDIRECTIONAL
     float backward = importance * catch_density(s, r.direction) / float(forward_pass.count);
     others = backward * (mis.merging + connects(path) * mis.vcm + pair.pdf_reverse * mis.vc);

@@ -11,6 +11,9 @@
 #endif
 #if MERGE_VERTICES
 #include "stages/merge_vertices.glsl"
+#if BEAMS
+#include "stages/merge_along.glsl"
+#endif
 #endif
 
 float passage(Path path) {
@@ -96,7 +99,14 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
 #if HAS_BENDING
     Spectrum carried = path.throughput;
 #endif
+#if BEAMS
+    Path before = path;
+    float to_surface = hit.t;
+#endif
     bool scatters = cross_medium(path, hit);
+#if BEAMS
+    merge_along(path, before, to_surface, hit.t);
+#endif
 #if HAS_BENDING
     if (is_bent(path) && hit.primitive == NO_RECORD) {
         end_step(path);
@@ -177,7 +187,11 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     if (!is_delta) vertex_shadow = connect_vertices(path, p, s, mis);
 #endif
 #if MERGE_VERTICES
+#if BEAMS
+    if (!is_delta && !mis.along && mis.merging > 0.0) merge_vertices(path, p, s, mis);  // else the ray has merged
+#else
     if (!is_delta && mis.merging > 0.0) merge_vertices(path, p, s, mis);
+#endif
 #endif
 #if FORWARD_ONLY
     if (forward_brings(path) && (event.next.event & EVENT_DELTA) == 0u) return false;

@@ -4,6 +4,9 @@
 
 void store_vertex(inout Path path, uint path_index, SurfacePoint p, ScatteringPoint s, Hit hit, VertexMis mis) {
     bool merges = MERGE_VERTICES == 1 && (path.flags & PATH_AFTER_NARROW) != 0u;
+#if BEAMS
+    if (mis.along) merges = mis.merging > 0.0;
+#endif
 #if !CONNECT_VERTICES
     if (!merges) return;
 #endif
@@ -26,7 +29,11 @@ void store_vertex(inout Path path, uint path_index, SurfacePoint p, ScatteringPo
     uint place = append_light_vertex(v);
     if (place == NO_LIGHT_VERTEX) return;  // the host repeats the pass with fewer paths
 #if MERGE_VERTICES
-    if (merges) enter_grid(place, p.position, merge_radius(p.position), path.vertices.y * forward_pass.count + path_index);
+    float radius = merge_radius(p.position);
+#if BEAMS
+    if (mis.along) radius *= BEAM_CELL_SCALE;
+#endif
+    if (merges) enter_grid(place, p.position, radius, path.vertices.y * forward_pass.count + path_index);
 #endif
     path.vertices = uvec2(place, path.vertices.y + 1u);
 }

@@ -24,6 +24,9 @@ void pass_medium(inout ShadowRay shadow, float distance) {
 
 Spectrum weighed(ShadowRay shadow) {
 #if HAS_SCATTERING
+#if BEAMS
+    shadow.others += shadow.others_apart;
+#endif
     return shadow.contribution * mis_weight(shadow.others);
 #else
     return shadow.contribution;

@@ -18,8 +18,8 @@ struct Radii {
     glm::vec3 camera;
     float at(const glm::vec3& p) const { return least + slope * glm::distance(p, camera); }
     std::string glsl() const {
-        return fmt::format("{:.9e} + {:.9e} * distance(p, vec3({:.9e}, {:.9e}, {:.9e}))", least, slope, camera.x,
-                           camera.y, camera.z);
+        return fmt::format("{:.9e} + {:.9e} * distance(p, vec3({:.9e}, {:.9e}, {:.9e}))", least, slope,
+                           camera.x, camera.y, camera.z);
     }
 };
 
@@ -40,8 +40,7 @@ size_t check(const Radii& radii, const std::vector<glm::vec3>& rays, float sprea
     std::uniform_real_distribution<float> uniform(-1, 1);
     std::vector<GridPoint> points, stored, ends;
     for (uint32_t i = 0; i < 20000; ++i) {
-        const glm::vec3 p =
-            centre + spread * glm::vec3(uniform(random), uniform(random), uniform(random));
+        const glm::vec3 p = centre + spread * glm::vec3(uniform(random), uniform(random), uniform(random));
         points.push_back({p, radii.at(p), i});
         stored.push_back({p, beam_cell_scale * radii.at(p), i});
     }

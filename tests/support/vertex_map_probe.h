@@ -37,9 +37,9 @@ class VertexMapProbe {
                KernelTimings* timings = nullptr);
     // Keys of the vertices within the radius of each point, in the order of the walk.
     std::vector<std::vector<uint32_t>> neighbours(const std::vector<GridPoint>& points, uint32_t room = 256);
-    // Keys of the vertices whose own radius a ray reaches; `ends`: of rays, in pairs, the first with the slope of
-    // the radius. Vertices must have been stored with a radius of beam_cell_scale times theirs; `radius`: GLSL for
-    // theirs at vec3 p.
+    // Keys of the vertices whose own radius a ray reaches; `ends`: of rays, in pairs, the first with the
+    // slope of the radius. Vertices must have been stored with a radius of beam_cell_scale times theirs;
+    // `radius`: GLSL for theirs at vec3 p.
     std::vector<std::vector<uint32_t>> along(const std::vector<GridPoint>& ends, const std::string& radius,
                                              uint32_t room = 256);
     // The same walk with the work of a simple merge for each neighbour; returns neighbours a point.
