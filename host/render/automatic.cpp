@@ -74,13 +74,15 @@ std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene
     AlgorithmChoice choice;
     if (!(scene.power > 0)) {
         choice.reason = "no light";
-    } else if (!find_narrow_materials(device, scene)) {
-        choice.reason = "no surface is smooth or nearly so";
-    } else if (!has_compact_light(device, scene)) {
-        choice.reason = "no light is compact";
-    } else {
-        return {};
+        return choice;
     }
+    const bool narrow = find_narrow_materials(device, scene);
+    choice.reason = "no surface is smooth or nearly so";
+    if (!narrow && !scene.features.scattering) return choice;
+    const CompactLights lights = find_compact_lights(device, scene);
+    if (!narrow && !lights.points) return choice;
+    if (lights.any) return {};
+    choice.reason = "no light is compact";
     return choice;
 }
 

@@ -55,11 +55,15 @@ bool find_narrow_materials(Device& device, Scene& scene) {
     return *scene.has_narrow_materials;
 }
 
-bool has_compact_light(Device& device, Scene& scene) {
-    if (scene.lights == 0) return false;
-    const auto compact =
-        ask(device, scene, "kernels/measure_compactness.comp", "LightCompactness", uint32_t(scene.lights));
-    return std::find(compact.begin(), compact.end(), 1u) != compact.end();
+CompactLights find_compact_lights(Device& device, Scene& scene) {
+    CompactLights found;
+    if (scene.lights == 0) return found;
+    for (const uint32_t light :
+         ask(device, scene, "kernels/measure_compactness.comp", "LightCompactness", uint32_t(scene.lights))) {
+        found.any |= (light & 1) != 0;
+        found.points |= (light & 2) != 0;
+    }
+    return found;
 }
 
 Techniques choose_techniques(Device& device, Scene& scene, Algorithm algorithm) {

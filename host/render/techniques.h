@@ -21,9 +21,12 @@ struct Techniques {
 // returns whether there are any, or media that bend rays, which are like them.
 bool find_narrow_materials(Device& device, Scene& scene);
 
-// Whether a light is seen under a small solid angle for its share of the power (asked of the classes on the
-// device).
-bool has_compact_light(Device& device, Scene& scene);
+// Whether a light is seen under a small solid angle for its share of the power, and whether one is a point or
+// a narrow beam (asked of the classes on the device).
+struct CompactLights {
+    bool any = false, points = false;
+};
+CompactLights find_compact_lights(Device& device, Scene& scene);
 
 // Vertices merge only behind narrow surfaces; a scene without light is left to backward rays.
 Techniques choose_techniques(Device& device, Scene& scene, Algorithm algorithm);
