@@ -10,10 +10,10 @@ namespace etendue {
 
 // Backward rays alone where no surface scatters into narrow lobes, nor a medium the light of points or narrow
 // beams, or no light is compact: then they find all light. Elsewhere a pilot renders a small image both ways.
-// Backward rays are trusted only where both images agree (they may have missed a caustic altogether); then the
-// smaller error at equal time wins. For bidirectional rendering the pilot also measures how the variance of a
-// pixel depends on the number of forward paths, a sum of one term for each direction (Ershov & Voloboy 2021),
-// and chooses the number with the least error at equal time.
+// Backward rays are trusted only where both images agree (they may have missed a caustic altogether); then
+// the smaller error at equal time wins. For bidirectional rendering the pilot also measures how the variance
+// of a pixel depends on the number of forward paths, a sum of one term for each direction (Ershov & Voloboy
+// 2021), and chooses the number with the least error at equal time.
 //
 // The choice depends on measured times, by powers of two in the number of paths and never in what the image
 // converges to. `interrupt` is asked between passes of the pilot; once it says true the choice means nothing.
