@@ -44,25 +44,24 @@ void enter_slab(inout BeamQuery q) {
     int upper = grid_level(1.0001 * BEAM_CELL_SCALE * (radius + change), farthest + 1.5 * side);
     q.cell = q.first_cell = q.last_cell = vec2(0);
     if (q.level < lower || q.level > upper) {  // over what cannot hold vertices of this level
-        float skip = 0.0;
-        if (q.level < lower) skip = (radius - LARGEST_RADIUS * side) / max(q.slope, 1e-9);
-        else skip = (0.5 * LARGEST_RADIUS * side - radius) / max(q.slope, 1e-9);
-        q.slab += clamp(floor(skip * q.direction.z * inverse) - 2.0, 0.0, 1e6);
-        return;
+        float skip = q.level < lower ? radius - LARGEST_RADIUS * side : 0.5 * LARGEST_RADIUS * side - radius;
+        float slabs = floor(skip / max(q.slope, 1e-9) * q.direction.z * inverse) - 2.0;
+        q.slab += clamp(slabs, 0.0, max(q.last_slab - q.slab, 0.0));
+    } else {  // and no return above: what lanes carry past it would be wrong on Mesa 22.3
+        float widest = min(LARGEST_RADIUS, 1.0001 * (radius + change) * inverse);
+        vec2 around = widest * sqrt(1.0 + turn * turn);
+        q.radius2 = square(widest * side);
+        vec2 one = start + a * turn, other = start + b * turn;
+        q.first_cell = floor(min(one, other) - around);
+        q.last_cell = floor(max(one, other) + around);
+        q.cell = q.first_cell - vec2(1, 0);
     }
-    float widest = min(LARGEST_RADIUS, 1.0001 * (radius + change) * inverse);
-    vec2 around = widest * sqrt(1.0 + turn * turn);
-    q.radius2 = square(widest * side);
-    vec2 one = start + a * turn, other = start + b * turn;
-    q.first_cell = floor(min(one, other) - around);
-    q.last_cell = floor(max(one, other) + around);
-    q.cell = q.first_cell - vec2(1, 0);
 }
 
 bool has_cells(BeamQuery q) { return q.cell.x < q.last_cell.x || q.cell.y < q.last_cell.y; }
 
 void enter_next_slab(inout BeamQuery q) {
-    q.slab += 1.0;
+    q.slab += max(1.0, abs(q.slab) * 2e-7);  // of levels too fine for floats, which hold no vertices there
     if (q.slab > q.last_slab) {
         q.level++;
         q.done = q.level > q.last_level;
