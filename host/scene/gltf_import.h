@@ -117,9 +117,10 @@ void decode_images(GltfImport& import);
 // gltf_materials.cpp
 void load_materials(GltfImport& import);
 uint32_t default_material(GltfImport& import);
-// A homogeneous medium with these parameters inside the material, named after what `at` points to.
-void add_medium(GltfImport& import, MaterialDescription& material, const JsonAt& at,
-                nlohmann::json parameters);
+// A dielectric takes its refractive indices from the media on its sides. One without media named gets one
+// inside, from the "ior" of its parameters, which lose it.
+void take_medium_from_ior(GltfImport& import, MaterialDescription& material, const JsonAt& at,
+                          nlohmann::json& parameters);
 
 // gltf_optics.cpp: ETD_optics, cameras and lights.
 void load_root_optics(GltfImport& import);

@@ -175,6 +175,16 @@ json volume_parameters(const JsonAt& volume, double ior, double dispersion) {
     return medium;
 }
 
+void add_medium(GltfImport& import, MaterialDescription& material, const JsonAt& at, json parameters) {
+    std::string name = "medium of " + at.pointer;
+    import.scene.media.push_back({name, { "homogeneous", std::move(parameters), at.pointer }});
+    material.inside = name;
+}
+
+bool names_media(const MaterialDescription& material) {
+    return !material.inside.empty() || !material.outside.empty();
+}
+
 void read_emission(GltfImport& import, const JsonAt& at, MaterialDescription& material) {
     std::vector<double> factor = numbers(at, "emissiveFactor", {0, 0, 0}, 0, max_coordinate);
     double strength = 1;
@@ -206,19 +216,14 @@ MaterialDescription read_material(GltfImport& import, size_t i) {
     if (std::optional<JsonAt> optics = find_extension(at, "ETD_optics"))
         read_material_optics(import, *optics, material);
 
-    bool media_named = !material.inside.empty() || !material.outside.empty();
     json& parameters = material.surface.parameters;
     if (material.surface.class_name == "dielectric") {
-        // The class takes its refractive indices from the media on its sides.
-        if (!media_named) {
-            add_medium(import, material, at, {{"ior", parameters.value("ior", json(1.5))}});
-            parameters.erase("ior");
-        }
+        take_medium_from_ior(import, material, at, parameters);
     } else if (material.surface.class_name.empty()) {
         material.surface = {"principled", principled_parameters(import, at), at.pointer};
         std::optional<JsonAt> volume = find_extension(at, "KHR_materials_volume");
         bool thick = volume && number(*volume, "thicknessFactor", 0, 0, max_coordinate) > 0;
-        if (thick && !media_named)
+        if (thick && !names_media(material))
             add_medium(import, material, at,
                        volume_parameters(*volume, parameters["ior"].get<double>(), material_dispersion(at)));
         else if (!thick && parameters.contains("transmission"))
@@ -240,10 +245,11 @@ const char* priority_error(const MaterialDescription& material) {
     return nullptr;
 }
 
-void add_medium(GltfImport& import, MaterialDescription& material, const JsonAt& at, json parameters) {
-    std::string name = "medium of " + at.pointer;
-    import.scene.media.push_back({name, { "homogeneous", std::move(parameters), at.pointer }});
-    material.inside = name;
+void take_medium_from_ior(GltfImport& import, MaterialDescription& material, const JsonAt& at,
+                          json& parameters) {
+    if (names_media(material)) return;
+    add_medium(import, material, at, {{"ior", parameters.value("ior", json(1.5))}});
+    parameters.erase("ior");
 }
 
 void load_materials(GltfImport& import) {

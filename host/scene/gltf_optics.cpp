@@ -118,10 +118,8 @@ void put_film_on_base(GltfImport& import, const JsonAt& at, MaterialDescription&
         if (!below.contains("eta")) below["eta"] = 0;
         if (!below.contains("k")) below["k"] = 1;
     } else if (base.class_name == "dielectric") {
-        const bool media_named = !material.inside.empty() || !material.outside.empty();
-        if (media_named && below.contains("ior")) fail_at(member(at, "ior"), "is that of the medium named");
-        if (!media_named) add_medium(import, material, at, {{"ior", below.value("ior", json(1.5))}});
-        below.erase("ior");
+        take_medium_from_ior(import, material, at, below);
+        if (below.contains("ior")) fail_at(member(at, "ior"), "is that of the medium named");
     } else {
         fail_at(member(at, "class"), "is '{}'; must be conductor, dielectric or principled", base.class_name);
     }
