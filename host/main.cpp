@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "host/cli.h"
+#include "host/cli/cli.h"
 #include "host/error.h"
 
 using namespace etendue;

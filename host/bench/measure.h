@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "host/bench/results.h"
-#include "host/commands.h"
+#include "host/options.h"
 #include "host/progress.h"
 #include "host/render/renderer.h"
 

@@ -10,7 +10,7 @@
 #include "host/image/exr.h"
 #include "host/image/png.h"
 #include "host/interrupt.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 
 namespace etendue {
 namespace {

@@ -5,7 +5,7 @@
 #include <future>
 
 #include "host/error.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 
 namespace etendue {
 

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "host/scene/spectral_value.h"
+#include "host/spectra/spectral_value.h"
 
 namespace etendue {
 

@@ -6,7 +6,7 @@
 #include "host/commands/open_scene.h"
 #include "host/error.h"
 #include "host/render/automatic.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 
 namespace etendue {
 namespace {

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <thread>
 
-#include "host/commands.h"
+#include "host/options.h"
 #include "host/gpu/program_store.h"
 #include "host/render/renderer.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "host/commands.h"
+#include "host/options.h"
 #include "host/gpu/program_store.h"
 #include "host/scene/scene.h"
 

@@ -1,7 +1,7 @@
 // What `etendue view` loads at run time, so that no other command needs a window library: libetendue_view.so,
 // which takes everything but the window itself from the executable.
 #pragma once
-#include "host/commands.h"
+#include "host/options.h"
 
 // Shows the scene until the window is closed; the exit code. Errors leave as Error.
 extern "C" int etendue_view(const etendue::ViewOptions& options);

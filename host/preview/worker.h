@@ -7,7 +7,7 @@
 #include <functional>
 #include <thread>
 
-#include "host/commands.h"
+#include "host/options.h"
 #include "host/preview/background_pilot.h"
 #include "host/preview/preview.h"
 #include "host/preview/start_programs.h"

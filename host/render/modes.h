@@ -21,17 +21,4 @@ enum class Schedule {
 };
 const char* schedule_name(Schedule schedule);
 
-// What paths carry.
-enum class ColorMode {
-    automatic,  // wavelengths where the scene has a spectrum
-    rgb,        // three channels
-    spectral,   // four wavelengths a pass
-};
-
-// Where the random numbers of paths come from.
-enum class SampleSequence {
-    sobol,        // Sobol' points, Owen-scrambled: the error falls faster than with independent numbers
-    independent,  // hashes
-};
-
 }  // namespace etendue

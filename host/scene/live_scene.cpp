@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "host/error.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "host/scene/live_places.h"
 
 namespace etendue {

@@ -13,7 +13,7 @@
 #include "host/measured/measured_bsdf.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
-#include "host/scene/environment_map.h"
+#include "host/lights/environment_map.h"
 #include "host/scene/spectral_value.h"
 
 namespace etendue {

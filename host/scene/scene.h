@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "host/gpu/kernel.h"
-#include "host/render/modes.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
+#include "host/scene/path_modes.h"
 #include "host/scene/features.h"
 #include "host/spectra/spectrum.h"
 #include "host/scene/records.h"
-#include "host/scene/world.h"
+#include "host/geometry/world.h"
 
 namespace etendue {
 

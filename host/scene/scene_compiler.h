@@ -2,7 +2,7 @@
 // to compile_scene: the steps stand in scene.cpp, scene_spectra.cpp, scene_materials.cpp, scene_geometry.cpp
 // and scene_lights.cpp.
 #pragma once
-#include "host/scene/light_tree.h"
+#include "host/lights/light_tree.h"
 #include "host/scene/scene.h"
 #include "host/scene/scene_memory.h"
 

@@ -4,7 +4,7 @@
 
 #include "host/error.h"
 #include "host/scene/scene_compiler.h"
-#include "host/scene/unrolled_traversal.h"
+#include "host/geometry/unrolled_traversal.h"
 
 namespace etendue {
 

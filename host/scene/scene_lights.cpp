@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "host/error.h"
-#include "host/scene/emission_choice.h"
-#include "host/scene/emission_texture.h"
+#include "host/lights/emission_choice.h"
+#include "host/lights/emission_texture.h"
 #include "host/scene/scene_compiler.h"
 #include "host/spectra/color.h"
 

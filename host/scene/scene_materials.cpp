@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "host/error.h"
-#include "host/scene/emission_texture.h"
+#include "host/lights/emission_texture.h"
 #include "host/scene/scene_compiler.h"
 
 namespace etendue {

@@ -13,10 +13,10 @@
 #include "host/measured/measured_bsdf.h"
 #include "host/scene/classes.h"
 #include "host/scene/density_bricks.h"
-#include "host/scene/environment_map.h"
+#include "host/lights/environment_map.h"
 #include "host/scene/features.h"
 #include "host/scene/texture_pack.h"
-#include "host/scene/world.h"
+#include "host/geometry/world.h"
 
 namespace etendue {
 

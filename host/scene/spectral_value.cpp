@@ -183,14 +183,6 @@ std::string message_place(const SceneDescription& scene, const std::string& wher
     return fmt::format("{}: {}", scene.file.string(), where.empty() ? "/" : where);
 }
 
-SpectralTable SpectralValue::as_table(SpectralKind kind) const {
-    if (table) return *table;
-    return kind == SpectralKind::radiance ? radiance_of_rgb(rgb) : factor_of_rgb(rgb);
-}
-
-float SpectralValue::least() const { return table ? table->least() : std::min({rgb.x, rgb.y, rgb.z}); }
-float SpectralValue::greatest() const { return table ? table->greatest() : std::max({rgb.x, rgb.y, rgb.z}); }
-
 SpectralValue spectral_value(const json& value, const SceneDescription& scene, const std::string& where,
                              SpectralKind kind) {
     return Reader(scene, where, kind).read(value);

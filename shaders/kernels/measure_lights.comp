@@ -1,5 +1,5 @@
 // Power, bounds and directions of every light, for the host to build the light hierarchy from
-// (host/scene/light_tree.h) and for the power balance. One lane a light. Reads: lights and what they refer
+// (host/lights/light_tree.h) and for the power balance. One lane a light. Reads: lights and what they refer
 // to. Writes: LightBoundsTable. Barrier expected: after the dispatch.
 #include "interfaces/light_source.glsl"
 

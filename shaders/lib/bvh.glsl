@@ -1,4 +1,4 @@
-// Layout of the hierarchies that the host builds (host/scene/bvh.h), and the test of a node's two boxes.
+// Layout of the hierarchies that the host builds (host/geometry/bvh.h), and the test of a node's two boxes.
 //
 // nodes[i] is an entry (uvec4) of the `nodes` buffer. A tree starts with a header of two entries:
 //     lower corner of its grid (float bits), reference of the root | cells per metre, largest extent in m (float bits)

@@ -5,7 +5,7 @@
 // compared one by one; more are found by a stochastic descent of a tree whose nodes bound position, intensity
 // and directions of four sets each (Conty Estévez & Kulla 2018, "Importance Sampling of Many Lights with
 // Adaptive Tree Splitting", where it is binary: with four, half as many choices are made from coarse bounds
-// for the same work). host/scene/light_tree.h builds it. The receiving normal is left out, so that a ray that
+// for the same work). host/lights/light_tree.h builds it. The receiving normal is left out, so that a ray that
 // hits a light later can tell the probability from its origin alone.
 //
 // The host defines LIGHT_COUNT, INFINITE_LIGHT_COUNT and HAS_LIGHT_TREE (0: the nodes are a list, to be read

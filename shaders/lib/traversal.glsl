@@ -5,7 +5,7 @@
 
 #include "lib/bvh.glsl"
 
-// Entries of the stack: the deepest way down (bvh_max_depth of host/scene/bvh.h) and what marks its ends, twice with
+// Entries of the stack: the deepest way down (bvh_max_depth of host/geometry/bvh.h) and what marks its ends, twice with
 // instances. The host may know that less is enough.
 #ifndef BVH_STACK_SIZE
 #if HAS_INSTANCES
@@ -34,7 +34,7 @@ bool comes_after(Hit a, Hit b) {
 #define HIT_LIMIT(hit) hit.t
 #endif
 
-// Scenes of few primitives come as straight code (host/scene/unrolled_traversal.h).
+// Scenes of few primitives come as straight code (host/geometry/unrolled_traversal.h).
 #if HAS_UNROLLED_TRAVERSAL
 #include "generated/unrolled_traversal.glsl"
 #else

@@ -14,7 +14,7 @@
 #include "host/error.h"
 #include "host/image/compare.h"
 #include "host/render/renderer.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "host/scene/scene_compiler.h"
 #include "host/spectra/color.h"
 

@@ -16,7 +16,7 @@
 
 #include "host/error.h"
 #include "host/gpu/kernel.h"
-#include "host/scene/bvh.h"
+#include "host/geometry/bvh.h"
 #include "tests/bench/interior.h"
 
 using namespace etendue;

@@ -11,7 +11,7 @@
 
 #include "host/gpu/shader_compiler.h"
 #include "host/render/renderer.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "host/scene/live_scene.h"
 
 using namespace etendue;

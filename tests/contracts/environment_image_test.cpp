@@ -6,7 +6,7 @@
 #include <random>
 
 #include "host/error.h"
-#include "host/scene/environment_map.h"
+#include "host/lights/environment_map.h"
 #include "tests/contracts/light_configurations.h"
 #include "tests/support/device_fixture.h"
 #include "tests/support/statistics.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "host/error.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "tests/support/render_probe.h"
 #include "tests/support/temporary_folder.h"
 

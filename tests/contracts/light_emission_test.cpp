@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "host/scene/emission_choice.h"
+#include "host/lights/emission_choice.h"
 #include "host/scene/features.h"
 #include "tests/support/device_fixture.h"
 #include "tests/support/statistics.h"

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "host/scene/features.h"
-#include "host/scene/light_tree.h"
+#include "host/lights/light_tree.h"
 #include "tests/support/device_fixture.h"
 #include "tests/support/statistics.h"
 

@@ -1,4 +1,4 @@
-#include "host/scene/bvh.h"
+#include "host/geometry/bvh.h"
 
 #include <doctest/doctest.h>
 

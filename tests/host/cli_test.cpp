@@ -1,5 +1,5 @@
 // The command line: what it understands, and one line for what it does not.
-#include "host/cli.h"
+#include "host/cli/cli.h"
 
 #include <doctest/doctest.h>
 

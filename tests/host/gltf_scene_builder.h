@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/error.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 
 namespace etendue {
 

@@ -1,5 +1,5 @@
 // The light hierarchy: every node encloses its lights, every trail leads to its light, no input breaks it.
-#include "host/scene/light_tree.h"
+#include "host/lights/light_tree.h"
 
 #include <doctest/doctest.h>
 

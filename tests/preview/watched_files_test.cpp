@@ -6,7 +6,7 @@
 #include "host/image/exr.h"
 #include "host/image/png.h"
 #include "host/preview/worker.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "host/scene/scene_files.h"
 #include "tests/preview/two_balls.h"
 

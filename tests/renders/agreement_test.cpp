@@ -77,7 +77,7 @@ TEST_SUITE("long") {
         SceneBuilder s;
         add_room(s);
         add_lamp(s, 1.5);
-        // So many triangles that the copies stay instances (host/scene/world.cpp: 65536).
+        // So many triangles that the copies stay instances (host/geometry/world.cpp: 65536).
         add_sphere_mesh(s, 0.5f, 128, 66, s.surface(metal(0.2)), at(1.2, -1.5, 0.3));
         add_copies(s, {{{}, {1, 1, 1}},
                        {at(0.1, -1.6, -0.9), {-1, 0.7, 1.2}},

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "tests/support/render_probe.h"
 
 using namespace etendue;

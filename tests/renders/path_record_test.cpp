@@ -6,7 +6,7 @@
 
 #include "host/error.h"
 #include "host/gpu/shader_compiler.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "host/scene/spectral_value.h"
 #include "tests/support/render_probe.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "host/image/exr.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "host/spectra/color.h"
 #include "tests/support/render_probe.h"
 

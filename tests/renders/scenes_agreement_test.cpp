@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <map>
 
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "tests/renders/algorithm_comparison.h"
 
 using namespace etendue;

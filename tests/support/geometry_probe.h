@@ -4,11 +4,11 @@
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 
-#include "host/scene/bvh.h"
+#include "host/geometry/bvh.h"
 #include "host/scene/classes.h"
 #include "host/scene/records.h"
-#include "host/scene/unrolled_traversal.h"
-#include "host/scene/world.h"
+#include "host/geometry/unrolled_traversal.h"
+#include "host/geometry/world.h"
 #include "tests/support/device_fixture.h"
 
 namespace etendue {
@@ -46,7 +46,7 @@ class GeometryProbe {
 
     // Builds the hierarchies and compiles what the world needs.
     void build(NodeFormat format = NodeFormat::quantised);
-    // Puts straight code in the place of the hierarchy (host/scene/unrolled_traversal.h), after build().
+    // Puts straight code in the place of the hierarchy (host/geometry/unrolled_traversal.h), after build().
     UnrolledTraversal unroll();
 
     // `brute_force` = false leaves `expected` undefined and takes a fraction of the time.

@@ -1,6 +1,6 @@
 #include "tests/support/light_probe.h"
 
-#include "host/scene/environment_map.h"
+#include "host/lights/environment_map.h"
 #include "host/scene/records.h"
 
 namespace etendue {

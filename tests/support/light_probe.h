@@ -7,7 +7,7 @@
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
 #include "host/scene/features.h"
-#include "host/scene/light_tree.h"
+#include "host/lights/light_tree.h"
 #include "tests/support/device_fixture.h"
 
 namespace etendue {

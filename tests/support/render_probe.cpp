@@ -9,7 +9,7 @@
 
 #include "host/gpu/shader_compiler.h"
 #include "host/image/compare.h"
-#include "host/scene/gltf.h"
+#include "host/gltf/gltf.h"
 #include "tests/support/statistics.h"
 
 namespace etendue {

@@ -1,0 +1,297 @@
+#include "host/cli/cli.h"
+
+#include <CLI/CLI.hpp>
+
+#include "host/cli/rays.h"
+#include "host/cli/shared.h"
+#include "host/cli/values.h"
+#include "host/cli/view.h"
+#include "host/error.h"
+
+#ifndef ETENDUE_VERSION
+#define ETENDUE_VERSION "unknown"
+#endif
+
+namespace etendue {
+namespace {
+
+const char* overview =
+    "Exit codes: 0 done, 1 a comparison failed, 2 bad usage or bad scene, 3 no usable device or the device "
+    "failed,\n"
+    "130 interrupted (the image so far is written).";
+
+// Arguments as text (host/cli/values.h).
+struct RenderArguments {
+    std::optional<std::string> passes, seconds, error;
+    std::string polarization = "auto";
+    SharedArguments shared;
+};
+
+std::string quoted_command(int argc, const char* const* argv) {
+    std::string line = "etendue";
+    for (int i = 1; i < argc; ++i) {
+        std::string word = argv[i];
+        bool plain = !word.empty() && word.find_first_of(" \t\n\"'\\$&|;<>()*?[]#~`!{}") == std::string::npos;
+        line += plain ? " " + word : " '" + word + "'";
+    }
+    return line;
+}
+
+CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arguments) {
+    CLI::App* render = app.add_subcommand("render", "Render a glTF scene to an OpenEXR image");
+    render->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
+    render
+        ->add_option("-o,--output", options.output,
+                     "Image to write (default: the scene's name with .exr, here)")
+        ->option_text("OUT.exr");
+    auto* passes =
+        render->add_option("--passes", arguments.passes, "Stop after N passes: paths a pixel (default: 64)");
+    auto* seconds =
+        render->add_option("--time", arguments.seconds, "Stop after that many seconds of rendering");
+    auto* error = render->add_option(
+        "--error", arguments.error,
+        "Stop when the relative error (root of the relMSE) is below E, with 95 % confidence");
+    passes->option_text("N")->excludes(seconds)->excludes(error);
+    seconds->option_text("SEC")->excludes(error);
+    error->option_text("E");
+    add_shared(*render, options, arguments.shared,
+               {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
+                {"receiver", "Camera to render (default: the scene's first)"},
+                {"environment", "Latitude-longitude image for the scene's surroundings"},
+                {"algorithm", "How light is traced (default: auto)"},
+                {"vertex-memory",
+                 "Memory for vertices of forward paths; a pass that needs more is split (default: 256)"},
+                {"color", "What a ray carries (default: auto)"},
+                {"spectral-bins", "Also write the spectrum, in N equal bins from 360 to 830 nm"}});
+    render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
+        ->option_text("auto|off");
+    add_shared(*render, options, arguments.shared,
+               {{"schedule", "Whole paths in one kernel, or a kernel a stage (default: auto)"},
+                {"sampler", "Where random numbers come from (default: sobol)"},
+                {"seed", "Seed of the random numbers (default: 0)"},
+                {"device", "Vulkan device (default: the best; see: etendue devices)"}});
+    render
+        ->add_option("--checkpoint", options.checkpoint, "Keep the state there, to go on from with --resume")
+        ->option_text("FILE");
+    render->add_option("--resume", options.resume, "Go on from a checkpoint of the same scene and settings")
+        ->option_text("FILE");
+    render->add_option("--stats", options.stats, "Write counts, timings and the power balance there")
+        ->option_text("FILE.json");
+    add_shared(*render, options, arguments.shared,
+               {{"shaders", "Read the shaders from a folder (default: those built in)"}});
+    render->add_flag("--aovs", options.aovs, "Also write the layers albedo, normal, depth and error");
+    render->add_flag("-q,--quiet", options.quiet, "No progress and no warnings");
+    return render;
+}
+
+void finish_render(RenderOptions& options, const RenderArguments& arguments, std::string command_line) {
+    if (options.scene.empty()) fail_input("SCENE is empty (see etendue render --help)");
+    if (arguments.passes)
+        options.passes = parse_count(*arguments.passes, "--passes", 1, uint64_t(1) << 31);
+    else if (arguments.seconds)
+        options.seconds = parse_positive(*arguments.seconds, "--time", ", in seconds");
+    else if (arguments.error)
+        options.error = parse_positive(*arguments.error, "--error", "");
+    else
+        options.passes = 64;
+    finish_shared(options, arguments.shared);
+    options.seed = parse_count(arguments.shared.seed, "--seed", 0, UINT32_MAX);
+    options.algorithm = parse_algorithm(arguments.shared.algorithm, "--algorithm");
+    options.vertex_bytes = parse_mebibytes(arguments.shared.vertex_memory, "--vertex-memory");
+    options.schedule = parse_schedule(arguments.shared.schedule);
+    if (options.spectral_bins > 0 && options.color == ColorMode::rgb)
+        fail_input("--spectral-bins: goes with --color spectral or auto, not with rgb");
+    options.polarization = parse_choice<PolarizationMode>(
+        arguments.polarization, "--polarization",
+        {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});
+    if (options.output.empty()) options.output = default_output(options.scene);
+    if (options.output.extension() != ".exr")
+        fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
+                   options.output.string());
+    options.command_line = std::move(command_line);
+}
+
+CLI::App* add_compare(CLI::App& app, CompareOptions& options, std::optional<std::string>& max_relmse) {
+    CLI::App* compare =
+        app.add_subcommand("compare", "Compare an image with a reference: relMSE, RMSE, bias, worst pixels");
+    compare->add_option("A.exr", options.image, "Image")->required()->option_text(" ");
+    compare->add_option("B.exr", options.reference, "Reference of the same size")
+        ->required()
+        ->option_text(" ");
+    compare->add_option("--max-relmse", max_relmse, "Exit with 1 where relMSE is above X or not finite")
+        ->option_text("X");
+    compare->footer(
+        "relMSE = mean((A-B)² / (B² + 0.01 mean(B)²)) over pixels and channels. Where both images have an "
+        "error\n"
+        "layer (render --aovs), a z-test tells whether they differ by more than their noise.");
+    return compare;
+}
+
+struct BenchArguments {
+    std::optional<std::string> seconds, reference_relmse;
+    std::string algorithms = "backward,forward,bidirectional,auto";
+    SharedArguments shared;
+};
+
+CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& arguments) {
+    CLI::App* bench = app.add_subcommand("bench", "Error against time of the algorithms: table and plots");
+    bench->add_option("SCENE", options.scenes, "Scenes; none draws the page in DIR again")->option_text("…");
+    bench->add_option("-o,--output", options.output, "Folder for bench.csv, index.html and images")
+        ->required()
+        ->option_text("DIR");
+    bench
+        ->add_option("--reference", options.reference,
+                     "Image to measure against (default: one is rendered, in four times SEC)")
+        ->option_text("REF.exr");
+    bench
+        ->add_option("--reference-relmse", arguments.reference_relmse,
+                     "relMSE that the reference itself has (default: by its error layer, else 0)")
+        ->option_text("X");
+    bench->add_option("--algorithms", arguments.algorithms, "Of auto, backward, forward, bidirectional; all")
+        ->option_text("A,B,…");
+    bench->add_option("--time", arguments.seconds, "Seconds of rendering for each algorithm (default: 30)")
+        ->option_text("SEC");
+    add_shared(*bench, options, arguments.shared,
+               {{"size", "As for render (default: the reference's)"},
+                {"receiver"},
+                {"environment"},
+                {"vertex-memory"},
+                {"color"},
+                {"sampler"},
+                {"seed", "First seed (default: 0)"},
+                {"device"},
+                {"shaders"}});
+    bench->add_flag("-q,--quiet", options.quiet, "No progress and no warnings");
+    bench->get_option("SCENE")->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    return bench;
+}
+
+void finish_bench(BenchOptions& options, const BenchArguments& arguments) {
+    if (arguments.seconds) options.seconds = parse_positive(*arguments.seconds, "--time", ", in seconds");
+    finish_shared(options, arguments.shared);
+    if (arguments.reference_relmse)
+        options.reference_relmse = parse_positive(*arguments.reference_relmse, "--reference-relmse", "");
+    if (options.reference_relmse && options.reference.empty())
+        fail_input("--reference-relmse: goes with --reference");
+    if (!options.reference.empty() && options.scenes.size() > 1)
+        fail_input("--reference: goes with one scene, not with {}", options.scenes.size());
+    options.seed = parse_count(arguments.shared.seed, "--seed", 0, INT32_MAX);
+    options.vertex_bytes = parse_mebibytes(arguments.shared.vertex_memory, "--vertex-memory");
+    options.algorithms = parse_algorithms(arguments.algorithms, "--algorithms");
+}
+
+CLI::App* add_inspect(CLI::App& app, InspectOptions& options) {
+    CLI::App* inspect =
+        app.add_subcommand("inspect", "Objects, classes, features, kernels and memory of a scene");
+    inspect->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
+    SharedArguments none;
+    add_shared(
+        *inspect, options, none,
+        {{"receiver", "Camera (default: the scene's first)"}, {"environment"}, {"device"}, {"shaders"}});
+    return inspect;
+}
+
+CLI::App* add_classes(CLI::App& app, ClassesOptions& options) {
+    CLI::App* classes =
+        app.add_subcommand("classes", "Registered classes, their parameters, units, defaults and ranges");
+    classes->add_option("NAME", options.name, "Only this class")->option_text(" ");
+    classes->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    return classes;
+}
+
+// CLI11 calls a missing value by its type's name.
+std::string readable(std::string message) {
+    if (size_t at = message.find("1 required TEXT missing"); at != std::string::npos)
+        message.replace(at, std::string::npos, "value is missing");
+    return message;
+}
+
+}  // namespace
+
+std::filesystem::path default_output(const std::filesystem::path& scene) {
+    return scene.filename().replace_extension(".exr");
+}
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+    CLI::App app("étendue: a physically accurate renderer and lighting simulator", "etendue");
+    app.set_version_flag("-v,--version", "etendue " ETENDUE_VERSION);
+    app.set_help_flag("-h,--help", "Print this help and exit");
+    app.footer(overview);
+    app.require_subcommand(0, 1);
+    app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+
+    RenderOptions render_options;
+    RenderArguments render_arguments;
+    CompareOptions compare_options;
+    std::optional<std::string> max_relmse;
+    BenchOptions bench_options;
+    BenchArguments bench_arguments;
+    ViewOptions view_options;
+    ViewArguments view_arguments;
+    RaysOptions rays_options;
+    RaysArguments rays_arguments;
+    InspectOptions inspect_options;
+    ClassesOptions classes_options;
+    CLI::App* render = add_render(app, render_options, render_arguments);
+    CLI::App* compare = add_compare(app, compare_options, max_relmse);
+    CLI::App* bench = add_bench(app, bench_options, bench_arguments);
+    CLI::App* view = add_view(app, view_options, view_arguments);
+    CLI::App* rays = add_rays(app, rays_options, rays_arguments);
+    CLI::App* inspect = add_inspect(app, inspect_options);
+    CLI::App* classes = add_classes(app, classes_options);
+    CLI::App* devices =
+        app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
+
+    const auto commands = {render, view, rays, compare, bench, inspect, classes, devices};
+    std::string first = argc < 2 ? "" : argv[1];
+    bool known = first.starts_with("-");
+    for (CLI::App* command : commands) known = known || first == command->get_name();
+    if (!known)
+        fail_input(
+            "{}; one of: render, view, rays, compare, bench, inspect, classes, devices (see etendue --help)",
+            argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
+
+    CLI::App* chosen = &app;
+    auto command_name = [&] {
+        for (CLI::App* command : commands)
+            if (command->parsed()) chosen = command;
+        return chosen == &app ? std::string("etendue") : "etendue " + chosen->get_name();
+    };
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        command_name();
+        return TextAnswer{chosen->help(chosen == &app ? "" : "etendue", CLI::AppFormatMode::Normal)};
+    } catch (const CLI::CallForVersion& version) {
+        return TextAnswer{std::string(version.what()) + "\n"};
+    } catch (const CLI::ParseError& e) {
+        std::string name = command_name();
+        fail_input("{} (see {} --help)", readable(e.what()), name);
+    }
+    if (render->parsed()) {
+        finish_render(render_options, render_arguments, quoted_command(argc, argv));
+        return render_options;
+    }
+    if (compare->parsed()) {
+        if (max_relmse) compare_options.max_relmse = parse_positive(*max_relmse, "--max-relmse", "");
+        return compare_options;
+    }
+    if (bench->parsed()) {
+        finish_bench(bench_options, bench_arguments);
+        return bench_options;
+    }
+    if (rays->parsed()) {
+        finish_rays(rays_options, rays_arguments);
+        return rays_options;
+    }
+    if (view->parsed()) {
+        finish_view(view_options, view_arguments);
+        return view_options;
+    }
+    if (inspect->parsed()) return inspect_options;
+    if (classes->parsed()) return classes_options;
+    if (devices->parsed()) return DevicesOptions{};
+    fail_input("no command given (see etendue --help)");
+}
+
+}  // namespace etendue

@@ -1,0 +1,87 @@
+#include "host/cli/values.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace etendue {
+
+uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most) {
+    uint64_t value = 0;
+    auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc() || end != text.data() + text.size() || value < least || value > most)
+        fail_input("{} {}: must be a whole number from {} to {}", option, text, least, most);
+    return value;
+}
+
+double parse_positive(const std::string& text, const char* option, const char* unit) {
+    double value = 0;
+    auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failure != std::errc() || end != text.data() + text.size() || !(value > 0) || !std::isfinite(value))
+        fail_input("{} {}: must be a number above 0{}", option, text, unit);
+    return value;
+}
+
+ImageSize parse_size(const std::string& text) {
+    size_t cross = text.find_first_of("xX");
+    if (cross == std::string::npos)
+        fail_input("--size {}: must be WIDTHxHEIGHT in pixels, as in 640x480", text);
+    return {uint32_t(parse_count(text.substr(0, cross), "--size, width", 1, 65536)),
+            uint32_t(parse_count(text.substr(cross + 1), "--size, height", 1, 65536))};
+}
+
+uint64_t parse_mebibytes(const std::string& text, const char* option) {
+    return parse_count(text, option, 1, 1 << 20) << 20;
+}
+
+Algorithm parse_algorithm(const std::string& text, const char* option) {
+    return parse_choice<Algorithm>(text, option,
+                                   {{"auto", Algorithm::automatic},
+                                    {"backward", Algorithm::backward},
+                                    {"forward", Algorithm::forward},
+                                    {"bidirectional", Algorithm::bidirectional}});
+}
+
+std::vector<Algorithm> parse_algorithms(const std::string& text, const char* option) {
+    std::vector<Algorithm> algorithms;
+    for (size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+        end = text.find(',', begin);
+        const std::string name = text.substr(begin, end - begin);
+        algorithms.push_back(parse_algorithm(name, option));
+        if (std::count(algorithms.begin(), algorithms.end(), algorithms.back()) > 1)
+            fail_input("{}: {} is named twice", option, name);
+    }
+    return algorithms;
+}
+
+ColorMode parse_color(const std::string& text) {
+    return parse_choice<ColorMode>(
+        text, "--color",
+        {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
+}
+
+SampleSequence parse_sampler(const std::string& text) {
+    return parse_choice<SampleSequence>(
+        text, "--sampler", {{"sobol", SampleSequence::sobol}, {"independent", SampleSequence::independent}});
+}
+
+Schedule parse_schedule(const std::string& text) {
+    return parse_choice<Schedule>(text, "--schedule",
+                                  {{"auto", Schedule::automatic},
+                                   {"fused", Schedule::fused},
+                                   {"wavefront", Schedule::wavefront},
+                                   {"by-class", Schedule::by_class}});
+}
+
+double parse_exposure(const std::string& text) {
+    const double sign = text.starts_with("-") ? -1 : 1;
+    const std::string size = text.substr(text.starts_with("-") || text.starts_with("+"));
+    double value = 0;
+    const auto [end, error] = std::from_chars(size.data(), size.data() + size.size(), value);
+    if (size.empty() || error != std::errc() || end != size.data() + size.size() || !(value <= 32) ||
+        value < 0)
+        fail_input("--exposure {}: allowed: a number from -32 to 32", text);
+    return sign * value;
+}
+
+}  // namespace etendue

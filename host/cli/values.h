@@ -1,0 +1,31 @@
+// Values of options from their text. CLI11's own conversions take NaN, hexadecimal and trailing characters
+// for numbers. All fail with one line that names the option.
+#pragma once
+#include "host/options.h"
+#include "host/error.h"
+
+namespace etendue {
+
+uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most);
+uint64_t parse_mebibytes(const std::string& text, const char* option);  // the bytes
+double parse_positive(const std::string& text, const char* option, const char* unit);
+ImageSize parse_size(const std::string& text);  // of --size
+Algorithm parse_algorithm(const std::string& text, const char* option);
+std::vector<Algorithm> parse_algorithms(const std::string& text, const char* option);  // with commas between
+ColorMode parse_color(const std::string& text);                                        // of --color, …
+SampleSequence parse_sampler(const std::string& text);
+Schedule parse_schedule(const std::string& text);
+double parse_exposure(const std::string& text);
+
+template <class Choice>
+Choice parse_choice(const std::string& text, const char* option,
+                    std::initializer_list<std::pair<const char*, Choice>> choices) {
+    std::string allowed;
+    for (const auto& [name, value] : choices) {
+        if (text == name) return value;
+        allowed += allowed.empty() ? name : std::string(", ") + name;
+    }
+    fail_input("{} {}: not available; allowed: {}", option, text, allowed);
+}
+
+}  // namespace etendue

@@ -1,0 +1,259 @@
+#include "host/geometry/world.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/packing.hpp>
+
+#include "host/error.h"
+#include "host/scene/records.h"
+
+namespace etendue {
+namespace {
+
+constexpr uint64_t small_mesh_triangles =
+    65536;  // all copies of a mesh together: merged rather than instanced
+
+bool has_attributes(const MeshDescription& mesh) {
+    return !mesh.normals.empty() || !mesh.tangents.empty() || !mesh.uv0.empty() || !mesh.uv1.empty() ||
+           !mesh.colors.empty();
+}
+
+glm::vec3 transform_point(const glm::dmat4& m, const glm::vec3& p) {
+    return glm::vec3(m * glm::dvec4(p, 1.0));
+}
+
+void grow_transformed(Box& box, const glm::dmat4& m, const Box& local) {
+    for (int corner = 0; corner < 8; ++corner)
+        box.grow(
+            transform_point(m, {corner & 1 ? local.hi.x : local.lo.x, corner & 2 ? local.hi.y : local.lo.y,
+                                corner & 4 ? local.hi.z : local.lo.z}));
+}
+
+// Outward by a rounding step, so that float boxes hold what the doubles say.
+Box widened(Box box) {
+    const float infinity = std::numeric_limits<float>::infinity();
+    for (int i = 0; i < 3; ++i) {
+        box.lo[i] = std::nextafter(std::nextafter(box.lo[i], -infinity), -infinity);
+        box.hi[i] = std::nextafter(std::nextafter(box.hi[i], infinity), infinity);
+    }
+    return box;
+}
+
+Box mesh_bounds(const MeshDescription& mesh) {
+    Box box;
+    for (const glm::vec3& p : mesh.positions) box.grow(p);
+    return box;
+}
+
+Box triangle_box(const PrimitiveRecord& p) {
+    Box box;
+    box.grow(p.v0), box.grow(p.v1), box.grow(p.v2);
+    return box;
+}
+
+class Builder {
+  public:
+    Builder(const SceneDescription& scene, World& world, unsigned threads)
+        : scene_(scene), world_(world), threads_(threads) {}
+
+    // The mesh's vertices as attributes of the device; returns the index of the first.
+    uint32_t add_vertices(const MeshDescription& mesh, const glm::dmat4& world_from_local) {
+        const uint32_t first = uint32_t(world_.vertices.size());
+        const glm::dmat3 linear(world_from_local);
+        const glm::dmat3 normals = glm::inverse(glm::transpose(linear));
+        for (size_t i = 0; i < mesh.positions.size(); ++i) {
+            VertexRecord v{};
+            if (!mesh.normals.empty()) {
+                const glm::dvec3 n = normals * glm::dvec3(mesh.normals[i]);
+                if (const double length = glm::length(n); length > 0) v.normal = glm::vec3(n / length);
+            }
+            if (!mesh.tangents.empty()) {
+                const glm::dvec3 t = linear * glm::dvec3(mesh.tangents[i]);
+                // A mirrored mesh turns the handedness of its frames.
+                const float sign = glm::determinant(linear) < 0 ? -1.0f : 1.0f;
+                if (const double length = glm::length(t); length > 0)
+                    v.tangent = glm::vec4(glm::vec3(t / length), mesh.tangents[i].w * sign);
+            }
+            if (!mesh.uv0.empty()) v.uv0 = mesh.uv0[i];
+            if (!mesh.uv1.empty()) v.uv1 = mesh.uv1[i];
+            v.color =
+                mesh.colors.empty() ? 0xFFFFFFFFu : glm::packUnorm4x8(glm::clamp(mesh.colors[i], 0.0f, 1.0f));
+            world_.vertices.push_back(v);
+        }
+        return first;
+    }
+
+    // Appends the mesh's triangles, in the frame that `to_frame` leads to.
+    void add_triangles(const MeshDescription& mesh, const glm::dmat4& to_frame,
+                       std::vector<PrimitiveRecord>& out) {
+        const bool attributes = has_attributes(mesh);
+        if (attributes && world_.vertices.empty()) world_.vertices.push_back({{}, 0xFFFFFFFFu, {}, {}, {}});
+        const uint32_t first_vertex = attributes ? add_vertices(mesh, to_frame) : 0;
+        const bool mirrored = glm::determinant(glm::dmat3(to_frame)) < 0;
+        std::vector<glm::vec3> positions(mesh.positions.size());
+        for (size_t i = 0; i < positions.size(); ++i)
+            positions[i] = transform_point(to_frame, mesh.positions[i]);
+        out.reserve(out.size() + mesh.triangles.size());
+        for (glm::uvec3 t : mesh.triangles) {
+            if (mirrored) std::swap(t.y, t.z);  // the front stays the front
+            PrimitiveRecord p{positions[t.x], mesh.material, positions[t.y], no_record, positions[t.z], 0};
+            if (triangle_area_vanishes(p)) continue;
+            p.attributes = uint32_t(world_.triangle_indices.size());
+            if (keep_indices_)
+                world_.triangle_indices.push_back(attributes ? t + first_vertex : glm::uvec3(0));
+            out.push_back(p);
+        }
+        world_.triangles += mesh.triangles.size();
+    }
+
+    // A tree over `primitives`, which are appended to the world's in leaf order, `order`. Returns the tree's
+    // header.
+    uint32_t add_tree(const std::vector<PrimitiveRecord>& primitives, const std::vector<Box>& boxes,
+                      NodeFormat format, std::vector<uint32_t>* order = nullptr) {
+        const Bvh bvh = build_bvh(boxes, threads_);
+        const uint32_t first = uint32_t(world_.primitives.size());
+        const uint32_t header = encode_bvh(bvh, format, first, world_.nodes);
+        world_.primitives.reserve(first + primitives.size());
+        for (uint32_t i : bvh.order) world_.primitives.push_back(primitives[i]);
+        if (order) *order = bvh.order;
+        const double seconds = world_.statistics.seconds + bvh.statistics.seconds;
+        if (first == 0) world_.statistics = bvh.statistics;
+        world_.statistics.seconds = seconds;
+        return header;
+    }
+
+    void keep_indices(bool keep) { keep_indices_ = keep; }
+
+  private:
+    // What transforming to floats has made of a thin triangle; it could be hit by nothing.
+    static bool triangle_area_vanishes(const PrimitiveRecord& p) {
+        return p.v0 == p.v1 || p.v1 == p.v2 || p.v0 == p.v2;
+    }
+
+    const SceneDescription& scene_;
+    World& world_;
+    unsigned threads_;
+    bool keep_indices_ = false;
+};
+
+}  // namespace
+
+TransformRecord transform_record(const glm::dmat4& world_from_local) {
+    TransformRecord record;
+    const glm::dmat4 inverse = glm::inverse(world_from_local);
+    for (int column = 0; column < 4; ++column) {
+        record.world_from_local[column] = glm::vec3(world_from_local[column]);
+        record.local_from_world[column] = glm::vec3(inverse[column]);
+    }
+    return record;
+}
+
+World build_world(const SceneDescription& scene, const std::vector<Box>& shape_bounds,
+                  const std::vector<uint32_t>& shape_refs, unsigned threads, Features& features) {
+    World world;
+    Builder builder(scene, world, threads);
+
+    // Recentre on the middle of everything that is placed.
+    std::vector<Box> local_bounds;
+    for (const MeshDescription& mesh : scene.meshes) local_bounds.push_back(mesh_bounds(mesh));
+    glm::dvec3 lo(INFINITY), hi(-INFINITY);
+    const auto grow = [&](const glm::dmat4& m, const Box& box) {
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 p =
+                m * glm::dvec4(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+                               corner & 4 ? box.hi.z : box.lo.z, 1);
+            lo = glm::min(lo, p), hi = glm::max(hi, p);
+        }
+    };
+    for (const MeshInstance& instance : scene.instances)
+        if (!local_bounds[instance.mesh].empty())
+            grow(instance.world_from_local, local_bounds[instance.mesh]);
+    for (size_t i = 0; i < scene.shapes.size(); ++i) grow(scene.shapes[i].world_from_local, shape_bounds[i]);
+    if (lo.x <= hi.x) world.center = 0.5 * (lo + hi);
+    const glm::dmat4 recentre = glm::translate(glm::dmat4(1.0), -world.center);
+
+    std::vector<uint32_t> uses(scene.meshes.size());
+    for (const MeshInstance& instance : scene.instances) ++uses[instance.mesh];
+    const auto merged = [&](uint32_t mesh) {
+        return uses[mesh] == 1 || scene.materials[scene.meshes[mesh].material].emission ||
+               scene.meshes[mesh].triangles.size() * uint64_t(uses[mesh]) <= small_mesh_triangles;
+    };
+    features.vertex_attributes =
+        std::any_of(scene.instances.begin(), scene.instances.end(),
+                    [&](const MeshInstance& i) { return has_attributes(scene.meshes[i.mesh]); });
+    builder.keep_indices(features.vertex_attributes);
+
+    std::vector<PrimitiveRecord> primitives;
+    std::vector<uint32_t> placed;
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const MeshInstance& instance = scene.instances[i];
+        if (merged(instance.mesh))
+            builder.add_triangles(scene.meshes[instance.mesh], recentre * instance.world_from_local,
+                                  primitives);
+        placed.resize(primitives.size(), i);
+    }
+    std::vector<Box> boxes;
+    boxes.reserve(primitives.size());
+    for (const PrimitiveRecord& p : primitives) boxes.push_back(triangle_box(p));
+    features.triangles = !primitives.empty();
+
+    const auto place = [&](const glm::dmat4& world_from_local, PrimitiveKind kind, uint32_t word,
+                           uint32_t material, const Box& local) {
+        PrimitiveRecord p{};
+        p.v0.x = std::bit_cast<float>(word);
+        p.v0.y = std::bit_cast<float>(uint32_t(world.transforms.size()));
+        p.material = material;
+        p.light = no_record;
+        p.attributes = uint32_t(kind) << 30;
+        primitives.push_back(p);
+        Box box;
+        grow_transformed(box, world_from_local, local);
+        boxes.push_back(widened(box));
+        world.transforms.push_back(transform_record(world_from_local));
+    };
+    for (size_t i = 0; i < scene.shapes.size(); ++i) {
+        place(recentre * scene.shapes[i].world_from_local, PrimitiveKind::shape, shape_refs[i],
+              scene.shapes[i].material, shape_bounds[i]);
+        placed.push_back(uint32_t(scene.instances.size() + i));
+        features.shapes = true;
+    }
+    // Instances point to the header of their mesh's tree, which is built behind the world's: patched below.
+    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const MeshInstance& instance = scene.instances[i];
+        if (!merged(instance.mesh) && !local_bounds[instance.mesh].empty()) {
+            place(recentre * instance.world_from_local, PrimitiveKind::instance, instance.mesh, 0,
+                  local_bounds[instance.mesh]);
+            placed.push_back(i);
+            features.instances = true;
+            ++world.instances;
+        }
+    }
+
+    for (const Box& box : boxes) world.bounds.grow(box);
+    std::vector<uint32_t> order;
+    builder.add_tree(primitives, boxes, NodeFormat::quantised, &order);
+    for (uint32_t& i : order) i = placed[i];
+    world.placed = std::make_shared<const std::vector<uint32_t>>(std::move(order));
+    world.world_primitives = uint32_t(world.primitives.size());
+    primitives = {}, boxes = {};
+
+    std::vector<uint32_t> headers(scene.meshes.size(), no_record);
+    for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        if (uses[mesh] == 0 || merged(mesh) || local_bounds[mesh].empty()) continue;
+        std::vector<PrimitiveRecord> triangles;
+        builder.add_triangles(scene.meshes[mesh], glm::dmat4(1.0), triangles);
+        std::vector<Box> triangle_boxes;
+        for (const PrimitiveRecord& p : triangles) triangle_boxes.push_back(triangle_box(p));
+        headers[mesh] = builder.add_tree(triangles, triangle_boxes, NodeFormat::quantised);
+        features.triangles = true;
+    }
+    for (uint32_t i = 0; i < world.world_primitives; ++i)
+        if (primitive_kind(world.primitives[i]) == PrimitiveKind::instance)
+            world.primitives[i].v0.x =
+                std::bit_cast<float>(headers[std::bit_cast<uint32_t>(world.primitives[i].v0.x)]);
+    return world;
+}
+
+}  // namespace etendue

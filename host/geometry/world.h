@@ -1,0 +1,65 @@
+// The scene's geometry as the device holds it: one hierarchy over world triangles, analytic shapes and
+// instances.
+//
+// Meshes used once, or emissive, or small, are transformed to world space and merged; the others keep a
+// hierarchy of their own and are placed by instances. World coordinates are relative to `center`, so that a
+// scene far from its origin keeps its digits.
+#pragma once
+#include <functional>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "host/geometry/bvh.h"
+#include "host/scene/description.h"
+#include "host/scene/features.h"
+
+namespace etendue {
+
+// Twins of structs in shaders/geometry/triangle.glsl, lib/bvh.glsl and lib/primitives.glsl; a test compares
+// the layouts.
+struct PrimitiveRecord {
+    glm::vec3 v0;
+    uint32_t material;
+    glm::vec3 v1;
+    uint32_t light;
+    glm::vec3 v2;
+    uint32_t attributes;
+};
+struct TransformRecord {
+    glm::vec3 world_from_local[4], local_from_world[4];  // columns
+};
+struct VertexRecord {
+    glm::vec3 normal;  // zero = none
+    uint32_t color;
+    glm::vec4 tangent;
+    glm::vec2 uv0, uv1;
+};
+
+struct World {
+    glm::dvec3 center{0};
+    Box bounds;
+    std::vector<PrimitiveRecord> primitives;  // leaf order, one tree behind the other; the world's come first
+    uint32_t world_primitives = 0;
+    // Of the world's primitives: what they are of, counted through the scene's instances and then its shapes.
+    std::shared_ptr<const std::vector<uint32_t>> placed;
+    std::vector<glm::uvec4> nodes;
+    std::vector<TransformRecord> transforms;
+    std::vector<VertexRecord> vertices;
+    std::vector<glm::uvec3> triangle_indices;
+    uint64_t triangles = 0;    // in memory
+    uint64_t instances = 0;    // placed meshes that kept their own hierarchy
+    BvhStatistics statistics;  // of the world's tree; seconds of all
+};
+
+enum class PrimitiveKind : uint32_t { triangle = 0, shape = 1, instance = 2 };
+constexpr PrimitiveKind primitive_kind(const PrimitiveRecord& p) { return PrimitiveKind(p.attributes >> 30); }
+
+// `shape_bounds`: local boxes of scene.shapes. `shape_refs`: RecordRefs of their geometries. Sets the
+// geometry's features.
+World build_world(const SceneDescription& scene, const std::vector<Box>& shape_bounds,
+                  const std::vector<uint32_t>& shape_refs, unsigned threads, Features& features);
+
+TransformRecord transform_record(const glm::dmat4& world_from_local);
+
+}  // namespace etendue

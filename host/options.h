@@ -1,0 +1,92 @@
+// What each command can be told. The command line (cli/cli.h) fills these in.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/preview/view_transform.h"
+#include "host/render/modes.h"
+#include "host/scene/path_modes.h"
+
+namespace etendue {
+
+enum class PolarizationMode { automatic, off };
+
+struct ImageSize {
+    uint32_t width = 0, height = 0;
+};
+
+// What render, inspect and bench open.
+struct SceneChoice {
+    std::filesystem::path scene;
+    std::filesystem::path environment;  // image that takes the place of the scene's environment; may be empty
+    std::filesystem::path shaders;      // empty = those in the binary
+    std::string receiver;               // name; empty = the first of the scene
+    std::string device;                 // name, part of one, or index; empty = the best there is
+    ColorMode color = ColorMode::automatic;
+    uint32_t spectral_bins = 0;  // of the image, besides its colours; 0 = none
+    SampleSequence samples = SampleSequence::sobol;
+    std::optional<ImageSize> size;  // else 512 rows, and columns by the camera's aspect ratio
+};
+
+struct RenderOptions : SceneChoice {
+    std::filesystem::path output;    // never empty; default_output(scene) where none was given
+    std::optional<uint64_t> passes;  // exactly one of the three goals is set; 64 passes by default
+    std::optional<double> seconds, error;
+    Algorithm algorithm = Algorithm::automatic;
+    PolarizationMode polarization = PolarizationMode::automatic;
+    Schedule schedule = Schedule::automatic;
+    uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths
+    uint64_t seed = 0;
+    std::filesystem::path checkpoint, resume, stats;  // empty = none
+    bool aovs = false, quiet = false;
+    std::string command_line;  // as typed, for the image's attributes
+};
+
+struct ViewOptions : SceneChoice {  // `size`: of the window, in pixels
+    Algorithm algorithm = Algorithm::automatic;
+    Schedule schedule = Schedule::automatic;
+    uint64_t vertex_bytes = uint64_t(256) << 20;
+    uint64_t seed = 0;
+    std::optional<uint64_t> passes;     // after which the picture rests; none = never
+    std::optional<double> exposure;     // powers of two; none = metered
+    ToneCurve curve = ToneCurve::srgb;  // to begin with
+    std::filesystem::path stats;        // empty = none
+};
+
+struct CompareOptions {
+    std::filesystem::path image, reference;
+    std::optional<double> max_relmse;
+};
+
+struct InspectOptions : SceneChoice {};
+
+struct BenchOptions : SceneChoice {             // `scene` is each of `scenes` in turn
+    std::vector<std::filesystem::path> scenes;  // none: the page of `output` is drawn again
+    std::filesystem::path output;               // folder
+    std::filesystem::path reference;            // image; empty = one is rendered
+    std::optional<double> reference_relmse;     // that the reference itself has; else by its error layer
+    std::vector<Algorithm> algorithms;
+    double seconds = 30;  // of rendering for each algorithm
+    uint64_t vertex_bytes = uint64_t(256) << 20;
+    uint64_t seed = 0;
+    bool quiet = false;
+};
+
+struct RaysOptions : SceneChoice {
+    std::filesystem::path output;  // .json, .csv or .glb
+    uint32_t paths = 1000;
+    bool backward = false;  // from the receiver, through pixels spread over its image; else from the lights
+    std::vector<std::string> events, objects;  // only paths with such an event there; empty = any
+    std::vector<std::string> without;          // no paths that come to one of these
+    uint64_t seed = 0;
+};
+
+struct ClassesOptions {
+    std::string name;  // empty = all
+    std::filesystem::path shaders;
+};
+
+}  // namespace etendue
