@@ -2,7 +2,9 @@
 #include <chrono>
 #include <fstream>
 #include <glm/glm.hpp>
+#include <thread>
 
+#include "host/commands/choose_meanwhile.h"
 #include "host/commands/open_scene.h"
 #include "host/commands/stats.h"
 #include "host/error.h"
@@ -114,69 +116,94 @@ int render_command(const RenderOptions& given) {
         resumed = read_checkpoint(options.resume, identity);
         settings.choice = choice_from_json(resumed->counters.at("choice"));
     }
-    Renderer renderer(device, scene, settings);
-    if (resumed) restore(*resumed, options.resume, renderer);
+    ChooseMeanwhile chooses(device, scene, options, settings, receiver);
+    std::unique_ptr<Renderer> renderer = chooses.make_renderer();
+    if (resumed) restore(*resumed, options.resume, *renderer);
+    if (const std::string& note = chooses.note(); !note.empty()) show_note(progress, note);
     const double setup_seconds = seconds_since(start);
 
     RenderStatus status;
     status.passes_goal = options.passes, status.seconds_goal = options.seconds,
     status.error_goal = options.error;
-    status.passes_before = renderer.passes();
-    const uint64_t rays_before = all_rays(renderer.counters());
-    const auto render_start = Clock::now();
+    status.passes_before = renderer->passes();
+    const uint64_t rays_before = all_rays(renderer->counters());
+    auto render_start = Clock::now();
     double next_checkpoint = checkpoint_seconds;
     ErrorGoal error_goal{options.error.value_or(0)};
     bool accurate = false;
-    bool done = options.passes && renderer.passes() >= *options.passes;
-    while (!done && !interrupted()) {
+    bool done = options.passes && renderer->passes() >= *options.passes;
+    while ((!done || chooses.is_open()) && !interrupted()) {
+        if (chooses.has_chosen()) {  // the two ways are not mixed: backward rays alone may have missed light
+            if (auto chosen = chooses.take()) {
+                renderer = std::move(chosen);
+                render_start = Clock::now();
+                next_checkpoint = checkpoint_seconds;
+                error_goal = ErrorGoal{options.error.value_or(0)};
+                done = false;
+            } else {
+                renderer->explain(chooses.choice());
+            }
+            show_note(progress, chooses.note());
+            continue;
+        }
+        if (done) {
+            const double late = seconds_since(render_start) - options.seconds.value_or(1e9);
+            if (late > 0.1 * options.seconds.value_or(1e9)) {
+                chooses.give_up();
+                renderer->explain(chooses.choice());
+                show_note(progress, chooses.note());
+            }
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            continue;
+        }
         double batch = batch_seconds;
         if (options.seconds) batch = std::min(batch, *options.seconds - status.seconds);
-        uint32_t count = renderer.passes_in(batch);
-        if (options.passes) count = uint32_t(std::min<uint64_t>(count, *options.passes - renderer.passes()));
-        renderer.render_passes(count);
-        status.passes = renderer.passes();
+        uint32_t count = renderer->passes_in(batch);
+        if (options.passes) count = uint32_t(std::min<uint64_t>(count, *options.passes - renderer->passes()));
+        renderer->render_passes(count);
+        status.passes = renderer->passes();
         status.seconds = seconds_since(render_start);
-        status.rays = double(all_rays(renderer.counters()) - rays_before);
-        if (options.error && error_goal.is_due(renderer.passes())) {
-            const RelativeError error = renderer.relative_error();
+        status.rays = double(all_rays(renderer->counters()) - rays_before);
+        if (options.error && error_goal.is_due(renderer->passes())) {
+            const RelativeError error = renderer->relative_error();
             status.error = error.value();
-            accurate = error_goal.look(renderer.passes(), error);
+            accurate = error_goal.look(renderer->passes(), error);
         }
-        done = (options.passes && renderer.passes() >= *options.passes) ||
+        done = (options.passes && renderer->passes() >= *options.passes) ||
                (options.seconds && status.seconds >= *options.seconds) || accurate;
-        if (!options.checkpoint.empty() && status.seconds >= next_checkpoint) {
-            save_checkpoint(options.checkpoint, identity, renderer);
+        if (!options.checkpoint.empty() && !chooses.is_open() && status.seconds >= next_checkpoint) {
+            save_checkpoint(options.checkpoint, identity, *renderer);
             next_checkpoint = seconds_since(render_start) + checkpoint_seconds;
         }
         show_progress(progress, status);
     }
     finish_progress(progress, status);
-    if (!options.checkpoint.empty()) save_checkpoint(options.checkpoint, identity, renderer);
+    if (!options.checkpoint.empty()) save_checkpoint(options.checkpoint, identity, *renderer);
 
-    Image image = renderer.develop(options.aovs);
-    const RelativeError error = renderer.relative_error();
-    if (options.aovs) renderer.add_aovs(image, aov_samples);
-    renderer.add_spectra(image);
+    Image image = renderer->develop(options.aovs);
+    const RelativeError error = renderer->relative_error();
+    if (options.aovs) renderer->add_aovs(image, aov_samples);
+    renderer->add_spectra(image);
     image.attributes.merge(std::map<std::string, Attribute>{
         {"scene", options.scene.string()},
         {"command", options.command_line},
         {"seed", double(options.seed)},
-        {"passes", double(renderer.passes())},
-        {"rays", double(all_rays(renderer.counters()))},
-        {"seconds", renderer.seconds()},
-        {"algorithm", std::string(algorithm_name(renderer.choice().algorithm))},
+        {"passes", double(renderer->passes())},
+        {"rays", double(all_rays(renderer->counters()))},
+        {"seconds", renderer->seconds()},
+        {"algorithm", std::string(algorithm_name(renderer->choice().algorithm))},
         {"device", device.description.name},
         {"driver", device.description.driver},
         {"version", std::string(ETENDUE_VERSION)}});
     write_exr(options.output, image);
     if (!options.stats.empty())
-        write_stats(options.stats, options, device, scene, renderer, error, setup_seconds);
-    if (renderer.counters().non_finite)
+        write_stats(options.stats, options, device, scene, *renderer, error, setup_seconds);
+    if (renderer->counters().non_finite)
         show_note(progress, fmt::format("warning: {} samples were not finite and count as black",
-                                        renderer.counters().non_finite));
-    if (renderer.counters().depth_limit)
+                                        renderer->counters().non_finite));
+    if (renderer->counters().depth_limit)
         show_note(progress, fmt::format("warning: {} paths were cut at the depth limit",
-                                        renderer.counters().depth_limit));
+                                        renderer->counters().depth_limit));
     return int(interrupted() && !done ? ExitCode::interrupted : ExitCode::done);
 }
 

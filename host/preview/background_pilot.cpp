@@ -16,7 +16,7 @@ constexpr uint32_t small_pixels = 64;  // along both sides, of the renderer that
 
 }  // namespace
 
-BackgroundPilot::BackgroundPilot(const ViewOptions& options, const RenderSettings& settings, size_t index,
+BackgroundPilot::BackgroundPilot(const SceneChoice& options, const RenderSettings& settings, size_t index,
                                  const Receiver& receiver) {
     thread_ = std::thread([this, options, settings, index, receiver] {
         const auto thread = id_t(gettid());
@@ -36,7 +36,7 @@ BackgroundPilot::~BackgroundPilot() {
     thread_.join();
 }
 
-void BackgroundPilot::run(const ViewOptions& options, RenderSettings settings, size_t index,
+void BackgroundPilot::run(const SceneChoice& options, RenderSettings settings, size_t index,
                           const Receiver& receiver) {
     const auto device = create_device({options.device, false});
     Scene scene = compile_scene(*device, import_gltf(options.scene), scene_options(options));

@@ -13,7 +13,7 @@ namespace etendue {
 class BackgroundPilot {
   public:
     // Of the scene as its file has it, seen by its receiver `index` where that stands now.
-    BackgroundPilot(const ViewOptions& options, const RenderSettings& settings, size_t index,
+    BackgroundPilot(const SceneChoice& options, const RenderSettings& settings, size_t index,
                     const Receiver& receiver);
     ~BackgroundPilot();  // waits until the pass, or the kernel that is being compiled, ends
     BackgroundPilot(const BackgroundPilot&) = delete;
@@ -26,7 +26,7 @@ class BackgroundPilot {
     const std::vector<ExpectedProgram>& programs() const { return programs_; }  // that the choice needs
 
   private:
-    void run(const ViewOptions& options, RenderSettings settings, size_t index, const Receiver& receiver);
+    void run(const SceneChoice& options, RenderSettings settings, size_t index, const Receiver& receiver);
     std::atomic<bool> stop_ = false, ended_ = false;
     AlgorithmChoice choice_;
     std::vector<ExpectedProgram> programs_;

@@ -70,6 +70,10 @@ double best_paths(const Pilot& one, const Pilot& four) {
 
 }  // namespace
 
+bool deserves_pilot(double backward_paths) {
+    return 10.0 * 3 * pilot_passes * pilot_pixels * pilot_pixels <= backward_paths;
+}
+
 std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene) {
     AlgorithmChoice choice;
     if (!(scene.power > 0)) {

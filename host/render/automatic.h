@@ -19,6 +19,9 @@ namespace etendue {
 // converges to. `interrupt` is asked between passes of the pilot; once it says true the choice means nothing.
 AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings,
                                  const std::function<bool()>& interrupt = {});
+// Whether a render of so many backward paths, one a pixel and pass, is large enough for a pilot: the pilot's
+// paths are at most a tenth of them.
+bool deserves_pilot(double backward_paths);
 // The choice where it takes no pilot.
 std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene);
 

@@ -107,6 +107,8 @@ class Renderer {
     double warm_up_seconds() const { return warm_up_seconds_; }  // that the driver took to finish compiling
     Schedule schedule() const { return schedule_; }
     const AlgorithmChoice& choice() const { return choice_; }
+    // The same algorithm is chosen for another reason than was known when the renderer was made.
+    void explain(const AlgorithmChoice& choice) { choice_ = choice; }
 
     Image develop(bool errors = true) const { return film_->develop(errors); }
     // The mean radiance alone, developed on the device.
