@@ -1,0 +1,61 @@
+// --algorithm auto while passes go on (host/commands/choose_meanwhile.h): what is chosen, when, and what the user is told.
+// Scene caustic_box: backward rays alone miss its caustic, so that a pilot always ends with bidirectional.
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.h"
+
+using namespace etendue;
+
+namespace {
+
+const std::string caustic_box = std::string(ETENDUE_SOURCE_DIR) + "/scenes/caustic_box.gltf";
+
+nlohmann::json stats_of(const Executable& program, const Run& run) {
+    REQUIRE_MESSAGE(run.code == 0, run.err);
+    return nlohmann::json::parse(read_text(program.folder / "stats.json"));
+}
+
+bool says(const Run& run, const std::string& text) { return run.err.find(text) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("render: where forward rays win, the passes that were asked for are theirs") {
+    const Executable program;
+    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "96x96", "--passes", "256",
+                                 "--stats", "stats.json"});
+    const auto stats = stats_of(program, run);
+    CHECK(stats["algorithm"] == "bidirectional");
+    CHECK(stats["passes"] == 256);
+    CHECK(stats["forward_rays"].get<double>() >= 256 * 96 * 96 * 0.25);
+    CHECK(stats["pilot_seconds"].get<double>() > 0);
+    CHECK(says(run, "starting anew"));
+}
+
+TEST_CASE("render: a pilot that would cost more than a tenth is left out, and a line says what that may cost") {
+    const Executable program;
+    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "32x32", "--passes", "4",
+                                 "--stats", "stats.json"});
+    const auto stats = stats_of(program, run);
+    CHECK(stats["algorithm"] == "backward");
+    CHECK(stats["passes"] == 4);
+    CHECK(stats["pilot_seconds"] == 0);
+    CHECK(says(run, "no pilot for so few passes"));
+    CHECK(says(run, "--algorithm bidirectional"));
+}
+
+TEST_CASE("render: a pilot that is not done in time is given up") {
+    const Executable program;
+    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "64x64", "--time", "0.02",
+                                 "--stats", "stats.json"});
+    const auto stats = stats_of(program, run);
+    CHECK(stats["algorithm"] == "backward");
+    CHECK(says(run, "not done in time"));
+}
+
+TEST_CASE("render: a named algorithm runs no pilot and says nothing") {
+    const Executable program;
+    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "32x32", "--passes", "4", "--algorithm",
+                                 "backward", "--stats", "stats.json"});
+    CHECK(stats_of(program, run)["algorithm_reason"] == "asked for");
+    CHECK(!says(run, "pilot"));
+}
