@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/error.h"
+#include "host/gpu/compile_aside.h"
 #include "host/render/automatic.h"
 #include "host/render/pipelines.h"
 
@@ -39,6 +40,14 @@ void visit_counters(Counters& c, Visit visit) {
     visit("forward_escaped", c.forward_escaped);
     visit("forward_depth_limit_lost", c.forward_depth_limit_lost);
     visit("roulette", c.roulette);
+}
+
+// Kernels that no cache had: the driver has most likely not seen them either.
+std::vector<std::filesystem::path> newly_compiled(const Scene& scene) {
+    std::vector<std::filesystem::path> files;
+    for (const KernelReport& kernel : scene.kernels)
+        if (!kernel.from_store && !kernel.from_cache && !kernel.spirv.empty()) files.push_back(kernel.spirv);
+    return files;
 }
 
 }  // namespace
@@ -133,6 +142,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
         pipeline_ = std::make_unique<WavefrontPipeline>(device, scene, settings_, techniques, forward_.get(),
                                                         spectra_, film, schedule_ == Schedule::by_class);
     const auto start = std::chrono::steady_clock::now();
+    compile_aside(device, newly_compiled(scene));
     if (forward_) forward_->warm_up(commands_);
     pipeline_->warm_up(commands_);
     warm_up_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
