@@ -9,6 +9,8 @@ namespace {
 constexpr const char* unsure =
     "backward rays alone may miss light that smooth surfaces concentrate; --algorithm bidirectional does not";
 
+constexpr const char* undecided = "until a pilot tells";
+
 AlgorithmChoice backward(std::string reason) {
     AlgorithmChoice choice;
     choice.reason = std::move(reason);
@@ -16,6 +18,8 @@ AlgorithmChoice backward(std::string reason) {
 }
 
 }  // namespace
+
+bool is_undecided(const AlgorithmChoice& choice) { return choice.reason == undecided; }
 
 ChooseMeanwhile::ChooseMeanwhile(Device& device, Scene& scene, const RenderOptions& options,
                                  const RenderSettings& settings, const Receiver& receiver)
@@ -29,8 +33,9 @@ ChooseMeanwhile::ChooseMeanwhile(Device& device, Scene& scene, const RenderOptio
         note_ = fmt::format("no pilot for so few passes: {}", unsure);
         return;
     }
-    settings_.choice = backward("until a pilot tells");
-    pilot_ = std::make_unique<BackgroundPilot>(options, settings, size_t(&receiver - scene.receivers.data()), receiver);
+    settings_.choice = backward(undecided);
+    pilot_ = std::make_unique<BackgroundPilot>(options, settings, size_t(&receiver - scene.receivers.data()),
+                                               receiver);
 }
 
 std::unique_ptr<Renderer> ChooseMeanwhile::make_renderer() const {

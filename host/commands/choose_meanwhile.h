@@ -1,5 +1,6 @@
-// --algorithm auto while passes go on: they start with backward rays, which compile first, and a pilot finds out on
-// another thread whether these will do. What was asked for, passes, time or error, is asked of what was chosen.
+// --algorithm auto while passes go on: they start with backward rays, which compile first, and a pilot finds
+// out on another thread whether these will do. What was asked for, passes, time or error, is asked of what
+// was chosen.
 #pragma once
 #include <memory>
 #include <optional>
@@ -11,12 +12,15 @@
 
 namespace etendue {
 
+// Of a checkpoint written before the pilot had told: the choice is open again.
+bool is_undecided(const AlgorithmChoice& choice);
+
 class ChooseMeanwhile {
   public:
-    // Nothing is open where an algorithm was named or the settings hold a choice, where the scene tells without a pilot,
-    // or where a pilot would cost more than a tenth of the passes asked for.
-    ChooseMeanwhile(Device& device, Scene& scene, const RenderOptions& options, const RenderSettings& settings,
-                    const Receiver& receiver);
+    // Nothing is open where an algorithm was named or the settings hold a choice, where the scene tells
+    // without a pilot, or where a pilot would cost more than a tenth of the passes asked for.
+    ChooseMeanwhile(Device& device, Scene& scene, const RenderOptions& options,
+                    const RenderSettings& settings, const Receiver& receiver);
 
     std::unique_ptr<Renderer> make_renderer() const;  // of what is known so far
     bool is_open() const { return pilot_ != nullptr; }
@@ -25,7 +29,7 @@ class ChooseMeanwhile {
     std::unique_ptr<Renderer> take();
     void give_up();  // backward rays it is, and note() says that nobody knows whether they find all light
     const AlgorithmChoice& choice() const { return *settings_.choice; }  // once it was open and is no more
-    const std::string& note() const { return note_; }  // a line for the user; may be empty
+    const std::string& note() const { return note_; }                    // a line for the user; may be empty
 
   private:
     Device& device_;

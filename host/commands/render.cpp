@@ -114,7 +114,8 @@ int render_command(const RenderOptions& given) {
     std::optional<Checkpoint> resumed;
     if (!options.resume.empty()) {
         resumed = read_checkpoint(options.resume, identity);
-        settings.choice = choice_from_json(resumed->counters.at("choice"));
+        const AlgorithmChoice choice = choice_from_json(resumed->counters.at("choice"));
+        if (!is_undecided(choice)) settings.choice = choice;
     }
     ChooseMeanwhile chooses(device, scene, options, settings, receiver);
     std::unique_ptr<Renderer> renderer = chooses.make_renderer();
@@ -126,7 +127,7 @@ int render_command(const RenderOptions& given) {
     status.passes_goal = options.passes, status.seconds_goal = options.seconds,
     status.error_goal = options.error;
     status.passes_before = renderer->passes();
-    const uint64_t rays_before = all_rays(renderer->counters());
+    uint64_t rays_before = all_rays(renderer->counters());
     auto render_start = Clock::now();
     double next_checkpoint = checkpoint_seconds;
     ErrorGoal error_goal{options.error.value_or(0)};
@@ -136,6 +137,7 @@ int render_command(const RenderOptions& given) {
         if (chooses.has_chosen()) {  // the two ways are not mixed: backward rays alone may have missed light
             if (auto chosen = chooses.take()) {
                 renderer = std::move(chosen);
+                status.passes_before = rays_before = 0;
                 render_start = Clock::now();
                 next_checkpoint = checkpoint_seconds;
                 error_goal = ErrorGoal{options.error.value_or(0)};

@@ -1,5 +1,6 @@
-// --algorithm auto while passes go on (host/commands/choose_meanwhile.h): what is chosen, when, and what the user is told.
-// Scene caustic_box: backward rays alone miss its caustic, so that a pilot always ends with bidirectional.
+// --algorithm auto while passes go on (host/commands/choose_meanwhile.h): what is chosen, when, and what the
+// user is told. Scene caustic_box: backward rays alone miss its caustic, so that a pilot always ends with
+// bidirectional.
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
@@ -31,7 +32,8 @@ TEST_CASE("render: where forward rays win, the passes that were asked for are th
     CHECK(says(run, "starting anew"));
 }
 
-TEST_CASE("render: a pilot that would cost more than a tenth is left out, and a line says what that may cost") {
+TEST_CASE(
+    "render: a pilot that would cost more than a tenth is left out, and a line says what that may cost") {
     const Executable program;
     const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "32x32", "--passes", "4",
                                  "--stats", "stats.json"});
@@ -52,10 +54,30 @@ TEST_CASE("render: a pilot that is not done in time is given up") {
     CHECK(says(run, "not done in time"));
 }
 
+TEST_CASE("render: a run that ended before its pilot had told chooses when it goes on") {
+    const Executable program;
+    const std::vector<std::string> words = {"render", caustic_box, "-o",       "out.exr",
+                                            "--size", "96x96",     "--passes", "512"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), words.begin(), words.end());
+        return more;
+    };
+    // Ended at the first line of progress: a pilot takes longer.
+    const pid_t child = program.start(with({"--checkpoint", "c.etd"}));
+    for (int i = 0; i < 400 && read_text(program.folder / "stderr.txt").empty(); ++i) usleep(5000);
+    kill(child, SIGINT);
+    const Run stopped = program.finish(child);
+    REQUIRE(std::filesystem::exists(program.folder / "c.etd"));
+    const Run run = program.run(with({"--resume", "c.etd", "--stats", "stats.json"}));
+    const auto stats = stats_of(program, run);
+    CHECK(stats["algorithm"] == "bidirectional");
+    CHECK(stats["passes"] == 512);
+}
+
 TEST_CASE("render: a named algorithm runs no pilot and says nothing") {
     const Executable program;
-    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "32x32", "--passes", "4", "--algorithm",
-                                 "backward", "--stats", "stats.json"});
+    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "32x32", "--passes", "4",
+                                 "--algorithm", "backward", "--stats", "stats.json"});
     CHECK(stats_of(program, run)["algorithm_reason"] == "asked for");
     CHECK(!says(run, "pilot"));
 }
