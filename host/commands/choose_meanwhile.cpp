@@ -42,12 +42,13 @@ std::unique_ptr<Renderer> ChooseMeanwhile::make_renderer() const {
     return std::make_unique<Renderer>(device_, scene_, settings_);
 }
 
-std::unique_ptr<Renderer> ChooseMeanwhile::take() {
+bool ChooseMeanwhile::take() {
     settings_.choice = pilot_->choice();
     pilot_.reset();
-    note_ = fmt::format("{}: {}", algorithm_name(settings_.choice->algorithm), settings_.choice->reason);
-    if (settings_.choice->algorithm != Algorithm::backward) note_ += "; starting anew";
-    return settings_.choice->algorithm == Algorithm::backward ? nullptr : make_renderer();
+    const bool anew = settings_.choice->algorithm != Algorithm::backward;
+    note_ = fmt::format("{}: {}{}", algorithm_name(settings_.choice->algorithm), settings_.choice->reason,
+                        anew ? "; starting anew" : "");
+    return anew;
 }
 
 void ChooseMeanwhile::give_up() {

@@ -25,8 +25,8 @@ class ChooseMeanwhile {
     std::unique_ptr<Renderer> make_renderer() const;  // of what is known so far
     bool is_open() const { return pilot_ != nullptr; }
     bool has_chosen() const { return pilot_ && pilot_->has_ended(); }
-    // Closes the choice. A renderer to start anew with, or null: the one there is was right.
-    std::unique_ptr<Renderer> take();
+    // Closes the choice. Whether to start anew with another renderer: else the one there is was right.
+    bool take();
     void give_up();  // backward rays it is, and note() says that nobody knows whether they find all light
     const AlgorithmChoice& choice() const { return *settings_.choice; }  // once it was open and is no more
     const std::string& note() const { return note_; }                    // a line for the user; may be empty

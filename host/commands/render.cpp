@@ -135,13 +135,16 @@ int render_command(const RenderOptions& given) {
     bool done = options.passes && renderer->passes() >= *options.passes;
     while ((!done || chooses.is_open()) && !interrupted()) {
         if (chooses.has_chosen()) {  // the two ways are not mixed: backward rays alone may have missed light
-            if (auto chosen = chooses.take()) {
-                renderer = std::move(chosen);
+            if (chooses.take()) {
+                renderer.reset();  // two may not fit
+                renderer = chooses.make_renderer();
                 status.passes_before = rays_before = 0;
                 render_start = Clock::now();
                 next_checkpoint = checkpoint_seconds;
                 error_goal = ErrorGoal{options.error.value_or(0)};
-                done = false;
+                status.seconds = 0;
+                status.error.reset();
+                accurate = done = false;
             } else {
                 renderer->explain(chooses.choice());
             }
