@@ -1,25 +1,13 @@
 #include "host/gpu/buffer_addresses.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <set>
-#include <spirv/unified1/spirv.hpp>
 
-#include "host/error.h"
+#include "host/gpu/spirv.h"
 
 namespace etendue {
 namespace {
-
-// One instruction: its words, the first without the count. Operand positions below follow the SPIR-V
-// specification, section 3.49 (instructions).
-using Words = std::vector<uint32_t>;
-
-Words instruction(spv::Op op, std::initializer_list<uint32_t> operands) {
-    Words words{uint32_t(op)};
-    words.insert(words.end(), operands);
-    return words;
-}
 
 struct Block {
     uint32_t variable, type;  // ids; the type is the block's struct
@@ -29,12 +17,7 @@ struct Block {
 
 class Rewriter {
   public:
-    explicit Rewriter(const Spirv& spirv) : header_(spirv.begin(), spirv.begin() + 5) {
-        for (size_t at = 5; at < spirv.size(); at += spirv[at] >> 16) {
-            if (spirv[at] >> 16 == 0) fail_device("a compiled shader is not valid SPIR-V");
-            in_.emplace_back(spirv.begin() + long(at), spirv.begin() + long(at + (spirv[at] >> 16)));
-            in_.back()[0] &= 0xFFFF;
-        }
+    explicit Rewriter(const Spirv& spirv) : in_(split_spirv(spirv)) {
         read_types();
         find_blocks();
     }
@@ -45,7 +28,7 @@ class Rewriter {
         for (const Block& block : blocks_) result.blocks.push_back(block.name);
         result.binding = binding_;
         bool in_functions = false;
-        for (Words& words : in_) {
+        for (SpirvWords& words : in_.instructions) {
             const auto op = spv::Op(words[0]);
             if (op == spv::OpFunction && !in_functions) {
                 in_functions = true;
@@ -53,22 +36,19 @@ class Rewriter {
             }
             rewrite(op, words);
         }
-        Spirv& spirv = result.spirv = header_;
-        spirv[3] = bound_;
-        for (const Words& words : out_) {
-            spirv.push_back(uint32_t(words.size()) << 16 | words[0]);
-            spirv.insert(spirv.end(), words.begin() + 1, words.end());
-        }
+        SpirvModule out{in_.header, std::move(out_)};
+        out.header[3] = bound_;
+        result.spirv = join_spirv(out);
         return result;
     }
 
   private:
     uint32_t new_id() { return bound_++; }
-    void put(Words words) { out_.push_back(std::move(words)); }
+    void put(SpirvWords words) { out_.push_back(std::move(words)); }
 
     void read_types() {
-        bound_ = header_[3];
-        for (const Words& w : in_) switch (spv::Op(w[0])) {
+        bound_ = in_.header[3];
+        for (const SpirvWords& w : in_.instructions) switch (spv::Op(w[0])) {
                 case spv::OpTypeRuntimeArray:
                     run_time_arrays_.insert(w[1]);
                     break;
@@ -89,9 +69,7 @@ class Rewriter {
                     if (w[2] == uint_ && w[3] == 2) uvec2_ = w[1];
                     break;
                 case spv::OpName:
-                    names_[w[1]] =
-                        std::string(reinterpret_cast<const char*>(&w[2]),
-                                    strnlen(reinterpret_cast<const char*>(&w[2]), (w.size() - 2) * 4));
+                    names_[w[1]] = spirv_text(w, 2);
                     break;
                 case spv::OpDecorate:
                     if (w[2] == spv::DecorationBinding) bindings_[w[1]] = w[3];
@@ -103,7 +81,7 @@ class Rewriter {
 
     // Variables of blocks that end in a run-time array and are used by access chains alone.
     void find_blocks() {
-        for (const Words& w : in_) {
+        for (const SpirvWords& w : in_.instructions) {
             if (w[0] != spv::OpVariable || w[3] != spv::StorageClassStorageBuffer) continue;
             const uint32_t type = pointees_.at(w[1]);
             const auto members = struct_members_.find(type);
@@ -111,7 +89,7 @@ class Rewriter {
             blocks_.push_back({w[2], type, 0, names_.at(type)});
         }
         const auto is_used_otherwise = [&](const Block& block) {
-            return std::any_of(in_.begin(), in_.end(), [&](const Words& w) {
+            return std::any_of(in_.instructions.begin(), in_.instructions.end(), [&](const SpirvWords& w) {
                 return (w[0] == spv::OpArrayLength || w[0] == spv::OpFunctionCall ||
                         w[0] == spv::OpCopyObject) &&
                        std::find(w.begin() + 3, w.end(), block.variable) != w.end();
@@ -131,35 +109,35 @@ class Rewriter {
 
     // The table of addresses, the variables that keep them, and pointer types, behind all other declarations.
     void declare() {
-        if (!uint_) put(instruction(spv::OpTypeInt, {uint_ = new_id(), 32, 0}));
-        if (!uvec2_) put(instruction(spv::OpTypeVector, {uvec2_ = new_id(), uint_, 2}));
-        Words table = instruction(spv::OpTypeStruct, {table_type_});
+        if (!uint_) put(spirv_instruction(spv::OpTypeInt, {uint_ = new_id(), 32, 0}));
+        if (!uvec2_) put(spirv_instruction(spv::OpTypeVector, {uvec2_ = new_id(), uint_, 2}));
+        SpirvWords table = spirv_instruction(spv::OpTypeStruct, {table_type_});
         table.insert(table.end(), blocks_.size(), uvec2_);
         put(table);
         const uint32_t to_table = new_id(), to_address = new_id();
-        put(instruction(spv::OpTypePointer, {to_table, spv::StorageClassStorageBuffer, table_type_}));
-        put(instruction(spv::OpVariable, {to_table, table_, spv::StorageClassStorageBuffer}));
-        put(instruction(spv::OpTypePointer,
+        put(spirv_instruction(spv::OpTypePointer, {to_table, spv::StorageClassStorageBuffer, table_type_}));
+        put(spirv_instruction(spv::OpVariable, {to_table, table_, spv::StorageClassStorageBuffer}));
+        put(spirv_instruction(spv::OpTypePointer,
                         {table_pointer_ = new_id(), spv::StorageClassStorageBuffer, uvec2_}));
-        put(instruction(spv::OpTypePointer, {to_address, spv::StorageClassPrivate, uvec2_}));
+        put(spirv_instruction(spv::OpTypePointer, {to_address, spv::StorageClassPrivate, uvec2_}));
         for (uint32_t i = 0; i < blocks_.size(); ++i) {
-            put(instruction(spv::OpVariable, {to_address, blocks_[i].address, spv::StorageClassPrivate}));
-            put(instruction(spv::OpConstant, {uint_, new_id(), i}));
+            put(spirv_instruction(spv::OpVariable, {to_address, blocks_[i].address, spv::StorageClassPrivate}));
+            put(spirv_instruction(spv::OpConstant, {uint_, new_id(), i}));
             indices_.push_back(bound_ - 1);
         }
         // Of every type that a pointer into a block may have; few are used, which costs nothing.
         for (const auto& [pointer, pointee] : pointees_)
-            put(instruction(spv::OpTypePointer, {by_address_[pointee] = new_id(),
+            put(spirv_instruction(spv::OpTypePointer, {by_address_[pointee] = new_id(),
                                                  spv::StorageClassPhysicalStorageBuffer, pointee}));
     }
 
     void decorate_table() {
-        put(instruction(spv::OpDecorate, {table_type_, spv::DecorationBlock}));
-        put(instruction(spv::OpDecorate, {table_, spv::DecorationDescriptorSet, 0}));
-        put(instruction(spv::OpDecorate, {table_, spv::DecorationBinding, binding_}));
+        put(spirv_instruction(spv::OpDecorate, {table_type_, spv::DecorationBlock}));
+        put(spirv_instruction(spv::OpDecorate, {table_, spv::DecorationDescriptorSet, 0}));
+        put(spirv_instruction(spv::OpDecorate, {table_, spv::DecorationBinding, binding_}));
         for (uint32_t i = 0; i < blocks_.size(); ++i) {
-            put(instruction(spv::OpMemberDecorate, {table_type_, i, spv::DecorationOffset, 8 * i}));
-            put(instruction(spv::OpMemberDecorate, {table_type_, i, spv::DecorationNonWritable}));
+            put(spirv_instruction(spv::OpMemberDecorate, {table_type_, i, spv::DecorationOffset, 8 * i}));
+            put(spirv_instruction(spv::OpMemberDecorate, {table_type_, i, spv::DecorationNonWritable}));
         }
     }
 
@@ -167,28 +145,28 @@ class Rewriter {
     void load_addresses() {
         for (size_t i = 0; i < blocks_.size(); ++i) {
             const uint32_t at = new_id(), address = new_id();
-            put(instruction(spv::OpAccessChain, {table_pointer_, at, table_, indices_[i]}));
-            put(instruction(spv::OpLoad, {uvec2_, address, at}));
-            put(instruction(spv::OpStore, {blocks_[i].address, address}));
+            put(spirv_instruction(spv::OpAccessChain, {table_pointer_, at, table_, indices_[i]}));
+            put(spirv_instruction(spv::OpLoad, {uvec2_, address, at}));
+            put(spirv_instruction(spv::OpStore, {blocks_[i].address, address}));
         }
     }
 
     // Accesses through an address state its alignment: that of the widest scalar.
-    void align(Words& words, size_t mask_at) {
+    void align(SpirvWords& words, size_t mask_at) {
         if (words.size() <= mask_at) words.push_back(0);
         if (words[mask_at] & spv::MemoryAccessAlignedMask) return;
         words[mask_at] |= spv::MemoryAccessAlignedMask;
         words.insert(words.begin() + long(mask_at) + 1, has_wide_types_ ? 8 : 4);
     }
 
-    void rewrite(spv::Op op, Words& words) {
+    void rewrite(spv::Op op, SpirvWords& words) {
         switch (op) {
             case spv::OpMemoryModel:
                 words[1] = spv::AddressingModelPhysicalStorageBuffer64;
                 break;
             case spv::OpCapability:
                 if (!has_capability_)
-                    put(instruction(spv::OpCapability, {spv::CapabilityPhysicalStorageBufferAddresses}));
+                    put(spirv_instruction(spv::OpCapability, {spv::CapabilityPhysicalStorageBufferAddresses}));
                 has_capability_ = true;
                 if (words[1] == spv::CapabilityPhysicalStorageBufferAddresses) return;
                 break;
@@ -216,8 +194,8 @@ class Rewriter {
             case spv::OpInBoundsAccessChain:
                 if (const Block* block = find_block(words[3])) {
                     const uint32_t address = new_id(), pointer = new_id();
-                    put(instruction(spv::OpLoad, {uvec2_, address, block->address}));
-                    put(instruction(spv::OpBitcast, {by_address_.at(block->type), pointer, address}));
+                    put(spirv_instruction(spv::OpLoad, {uvec2_, address, block->address}));
+                    put(spirv_instruction(spv::OpBitcast, {by_address_.at(block->type), pointer, address}));
                     words[3] = pointer;
                 } else if (!addressed_.count(words[3])) {
                     break;
@@ -239,7 +217,7 @@ class Rewriter {
         if (op == spv::OpLabel && in_entry_)
             at_start_ = true, in_entry_ = false;
         else if (at_start_ && op != spv::OpVariable) {
-            const Words first = std::move(out_.back());
+            const SpirvWords first = std::move(out_.back());
             out_.pop_back();
             load_addresses();
             put(first);
@@ -247,11 +225,11 @@ class Rewriter {
         }
     }
 
-    Words header_;
-    std::vector<Words> in_, out_;
+    SpirvModule in_;
+    std::vector<SpirvWords> out_;
     uint32_t bound_ = 0, binding_ = 0;
     std::set<uint32_t> run_time_arrays_;
-    std::map<uint32_t, Words> struct_members_;
+    std::map<uint32_t, SpirvWords> struct_members_;
     std::map<uint32_t, uint32_t> pointees_;  // of pointers to storage buffers
     std::map<uint32_t, uint32_t> bindings_;
     std::map<uint32_t, std::string> names_;

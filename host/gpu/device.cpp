@@ -144,6 +144,13 @@ DeviceDescription describe(VkPhysicalDevice device, uint32_t index, bool for_win
     d.subgroup_size = subgroup.subgroupSize;
     d.max_buffer_range = p.limits.maxStorageBufferRange;
     d.max_allocation = maintenance.maxMemoryAllocationSize;
+    // Since Mesa 24 lavapipe compiles the fetch of a texel once for all kernels.
+    const char* reads = std::getenv("ETENDUE_READS");
+    const bool by_texel = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE && p.driverVersion >= VK_MAKE_VERSION(24, 0, 0);
+    if (reads ? std::string_view(reads) == "texels" : by_texel) {
+        d.max_texels = p.limits.maxTexelBufferElements;
+        d.max_texel_buffers = p.limits.maxPerStageDescriptorSampledImages;
+    }
     VkPhysicalDeviceMemoryProperties memory;
     vkGetPhysicalDeviceMemoryProperties(device, &memory);
     for (uint32_t i = 0; i < memory.memoryHeapCount; ++i)

@@ -13,27 +13,47 @@ namespace {
 
 constexpr uint32_t max_timed_dispatches = 1024;  // a command list; later ones run untimed
 
+constexpr uint64_t least_texel_bytes = 4;
+
+VkFormat texel_format(uint32_t words) {
+    return words == 4 ? VK_FORMAT_R32G32B32A32_UINT : words == 2 ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32_UINT;
+}
+
 }  // namespace
 
-Program::Program(Device& device, const CompiledShader& shader)
+std::set<std::string> beyond_texels(const Device& device, const BufferTable& buffers) {
+    std::set<std::string> names;
+    for (const auto& [name, buffer] : buffers)
+        if (buffer && buffer->bytes() / least_texel_bytes > device.description.max_texels) names.insert(name);
+    return names;
+}
+
+Program::Program(Device& device, const CompiledShader& shader, const std::set<std::string>& not_texels)
     : device_(device),
       name_(shader.name),
       layout_(reflect_shader(shader.spirv)),
       spirv_bytes_(shader.spirv.size() * 4),
       file_(shader.file) {
-    const AddressedShader addressed = use_addresses(shader.spirv);
+    TexelShader texels{shader.spirv, {}};
+    if (device.description.max_texels > 0)
+        texels = use_texels(shader.spirv, not_texels, device.description.max_texel_buffers);
+    texel_views_ = texels.views;
+    const AddressedShader addressed = use_addresses(texels.spirv);
     addressed_blocks_ = addressed.blocks;
     address_binding_ = addressed.binding;
     std::set<uint32_t> bound;  // several blocks may be views of one binding
     for (const BlockLayout& block : layout_.blocks)
         if (std::find(addressed.blocks.begin(), addressed.blocks.end(), block.block_name) ==
-            addressed.blocks.end())
+                addressed.blocks.end() &&
+            !has_texels(block.block_name))
             bound.insert(block.binding);
     if (!addressed.blocks.empty()) bound.insert(addressed.binding);
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (const uint32_t binding : bound)
         bindings.push_back(
             {binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+    for (const TexelShader::View& view : texel_views_)
+        bindings.push_back({view.binding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     set_info.bindingCount = uint32_t(bindings.size());
     set_info.pBindings = bindings.data();
@@ -67,6 +87,10 @@ Program::Program(Device& device, const CompiledShader& shader)
     set_debug_name(device, VK_OBJECT_TYPE_PIPELINE, uint64_t(pipeline_), name_);
 }
 
+bool Program::has_texels(const std::string& block) const {
+    return std::any_of(texel_views_.begin(), texel_views_.end(), [&](auto& view) { return view.block == block; });
+}
+
 Program::~Program() {
     vkDestroyPipeline(device_.handle, pipeline_, nullptr);
     vkDestroyPipelineLayout(device_.handle, pipeline_layout_, nullptr);
@@ -77,11 +101,16 @@ Kernel::Kernel(Device& device, std::shared_ptr<const Program> program, const Buf
     : device_(&device), program_(std::move(program)) {
     const std::vector<std::string>& addressed = program_->addressed_blocks_;
     std::vector<uint64_t> addresses(addressed.size());
-    std::map<uint32_t, const Buffer*> bound;
+    std::map<uint32_t, const Buffer*> bound, texels;
     for (const BlockLayout& block : layout().blocks) {
         const auto found = buffers.find(block.name);
         if (found == buffers.end())
             fail_device("kernel {} reads buffer {}, which the host does not bind", name(), block.name);
+        if (program_->has_texels(block.block_name)) {
+            for (const TexelShader::View& view : program_->texel_views_)
+                if (view.block == block.block_name) texels[view.binding] = found->second;
+            continue;
+        }
         const auto place = std::find(addressed.begin(), addressed.end(), block.block_name);
         if (place != addressed.end()) {
             addresses[size_t(place - addressed.begin())] = found->second->address();
@@ -98,12 +127,13 @@ Kernel::Kernel(Device& device, std::shared_ptr<const Program> program, const Buf
         bound[program_->address_binding_] = &addresses_;
     }
 
-    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                    std::max<uint32_t>(1, uint32_t(bound.size()))};
+    std::vector<VkDescriptorPoolSize> sizes{
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max<uint32_t>(1, uint32_t(bound.size()))}};
+    if (!texels.empty()) sizes.push_back({VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, uint32_t(texels.size())});
     VkDescriptorPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     pool_info.maxSets = 1;
-    pool_info.poolSizeCount = 1;
-    pool_info.pPoolSizes = &size;
+    pool_info.poolSizeCount = uint32_t(sizes.size());
+    pool_info.pPoolSizes = sizes.data();
     check(vkCreateDescriptorPool(device.handle, &pool_info, nullptr, &pool_), "vkCreateDescriptorPool");
     VkDescriptorSetAllocateInfo set_allocation{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
     set_allocation.descriptorPool = pool_;
@@ -120,16 +150,39 @@ Kernel::Kernel(Device& device, std::shared_ptr<const Program> program, const Buf
         write.pBufferInfo = &buffer_info;
         vkUpdateDescriptorSets(device.handle, 1, &write, 0, nullptr);
     }
+    for (const TexelShader::View& view : program_->texel_views_) bind_texels(view, *texels.at(view.binding));
+}
+
+void Kernel::bind_texels(const TexelShader::View& view, const Buffer& buffer) {
+    if (buffer.bytes() / 4 / view.words > device_->description.max_texels)
+        fail_device("{} needs {:.0f} MiB in one texel buffer; this device allows {:.0f} MiB", view.block,
+                    double(buffer.bytes()) / 1048576.0, double(device_->description.max_texels * 4 * view.words) / 1048576.0);
+    VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
+    info.buffer = buffer.handle();
+    info.format = texel_format(view.words);
+    info.range = buffer.bytes();
+    VkBufferView made = VK_NULL_HANDLE;
+    check(vkCreateBufferView(device_->handle, &info, nullptr, &made), "vkCreateBufferView");
+    texel_views_.push_back(made);
+    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
+    write.dstSet = set_;
+    write.dstBinding = view.binding;
+    write.descriptorCount = 1;
+    write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+    write.pTexelBufferView = &made;
+    vkUpdateDescriptorSets(device_->handle, 1, &write, 0, nullptr);
 }
 
 Kernel::~Kernel() {
     if (pool_) vkDestroyDescriptorPool(device_->handle, pool_, nullptr);
+    for (const VkBufferView view : texel_views_) vkDestroyBufferView(device_->handle, view, nullptr);
 }
 
 void Kernel::swap(Kernel& other) noexcept {
     std::swap(device_, other.device_);
     std::swap(program_, other.program_);
     std::swap(addresses_, other.addresses_);
+    std::swap(texel_views_, other.texel_views_);
     std::swap(pool_, other.pool_);
     std::swap(set_, other.set_);
 }

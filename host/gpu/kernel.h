@@ -4,11 +4,13 @@
 #include <bit>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "host/gpu/buffer.h"
 #include "host/gpu/reflection.h"
+#include "host/gpu/texel_reads.h"
 
 namespace etendue {
 
@@ -24,10 +26,14 @@ struct PushValue {
     uint32_t bits;
 };
 
+// Blocks of those buffers that are too large for a texel buffer of the device.
+std::set<std::string> beyond_texels(const Device& device, const BufferTable& buffers);
+
 // A pipeline without its buffers: what kernels of the same code share.
 class Program {
   public:
-    Program(Device& device, const CompiledShader& shader);
+    // Blocks named in `not_texels` are not read as texel buffers (host/gpu/texel_reads.h).
+    Program(Device& device, const CompiledShader& shader, const std::set<std::string>& not_texels = {});
     Program(const Program&) = delete;
     ~Program();
 
@@ -39,11 +45,13 @@ class Program {
   private:
     friend class Kernel;
     friend class CommandList;
+    bool has_texels(const std::string& block) const;  // is it read as a texel buffer?
     Device& device_;
     std::string name_;
     ShaderLayout layout_;
     size_t spirv_bytes_;
     std::filesystem::path file_;
+    std::vector<TexelShader::View> texel_views_;
     std::vector<std::string> addressed_blocks_;  // whose addresses stand in the buffer at address_binding_
     uint32_t address_binding_ = 0;
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
@@ -59,7 +67,7 @@ class Kernel {
     // binding.
     Kernel(Device& device, std::shared_ptr<const Program> program, const BufferTable& buffers);
     Kernel(Device& device, const CompiledShader& shader, const BufferTable& buffers)
-        : Kernel(device, std::make_shared<const Program>(device, shader), buffers) {}
+        : Kernel(device, std::make_shared<const Program>(device, shader, beyond_texels(device, buffers)), buffers) {}
     Kernel(Kernel&& other) noexcept { swap(other); }
     Kernel& operator=(Kernel&& other) noexcept {
         swap(other);
@@ -77,9 +85,11 @@ class Kernel {
   private:
     friend class CommandList;
     void swap(Kernel& other) noexcept;
+    void bind_texels(const TexelShader::View& view, const Buffer& buffer);
     Device* device_ = nullptr;
     std::shared_ptr<const Program> program_;
     Buffer addresses_;  // of the buffers that are read through them
+    std::vector<VkBufferView> texel_views_;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
 };

@@ -226,23 +226,27 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
     CompileOptions options;
     options.defines = scene.features.defines() + defines;
     options.cache_folder = scene.cache_folder;
-    const uint64_t key = hash_text(file, hash_text(options.defines, scene.sources.hash()));
+    BufferTable table = buffers;
+    for (const auto& [name, buffer] : scene.buffers) table.emplace(name, &buffer);
+    for (const auto& [name, buffer] : scene.shared_buffers) table.emplace(name, buffer.get());
+    uint64_t key = hash_text(file, hash_text(options.defines, scene.sources.hash()));
+    std::set<std::string> not_texels;
+    if (device.description.max_texels > 0) not_texels = beyond_texels(device, table);
+    for (const std::string& name : not_texels) key = hash_text(name, key);
     std::shared_ptr<const Program> program = device.programs->find(key);
     KernelReport report{"", key, true, true, 0, 0};
     if (!program) {
         report.from_store = false;
         const CompiledShader shader = compile_shader(scene.sources, file, options);
         report.from_cache = shader.from_cache, report.seconds = shader.seconds;
-        program = std::make_shared<const Program>(device, shader);
+        program = std::make_shared<const Program>(device, shader, not_texels);
         device.programs->add(key, program);
     }
     report.name = program->name(), report.spirv_bytes = program->spirv_bytes();
-    report.spirv = program->file();
+    // Whoever makes a program from its file alone knows of no buffers.
+    if (not_texels.empty()) report.spirv = program->file();
     if (std::none_of(scene.kernels.begin(), scene.kernels.end(), [&](auto& k) { return k.key == key; }))
         scene.kernels.push_back(report);
-    BufferTable table = buffers;
-    for (const auto& [name, buffer] : scene.buffers) table.emplace(name, &buffer);
-    for (const auto& [name, buffer] : scene.shared_buffers) table.emplace(name, buffer.get());
     Kernel kernel(device, std::move(program), table);
     for (const auto& block : kernel.layout().blocks)
         scene.reads_color_spectra |= block.name == "ColorSpectra";
