@@ -41,6 +41,10 @@ class Rewriter {
         for (const auto& [key, view] : views_)
             result.views.push_back({blocks_.at(key.first), view.binding, key.second});
         for (const SpirvWords& words : in_.instructions) rewrite(words);
+        std::vector<SpirvWords> constants;
+        for (const auto& [value, id] : made_constants_)
+            constants.push_back(spirv_instruction(spv::OpConstant, {uint_, id, value}));
+        out_.insert(out_.begin() + long(functions_at_), constants.begin(), constants.end());
         SpirvModule out{in_.header, std::move(out_)};
         out.header[3] = bound_;
         result.spirv = join_spirv(out);
@@ -240,37 +244,14 @@ class Rewriter {
         put(spv::OpTypePointer, {pointer, spv::StorageClassUniformConstant, image_});
         for (const auto& [key, view] : views_)
             put(spv::OpVariable, {pointer, view.variable, spv::StorageClassUniformConstant});
-        // Constants must stand before the functions that use them.
-        for (const auto& [id, place] : places_) {
-            const uint32_t words = texel_words(place);
-            for (const Place::Index& index : place.indices) constant(index.stride / (4 * words));
-            const uint32_t first = place.bytes / 4 / words, last = (place.bytes + size_of(place.type, place)) / 4 / words;
-            for (uint32_t texel = first; texel <= last; ++texel) constant(texel);
-        }
+        functions_at_ = out_.size();
     }
 
+    // Those that the functions turn out to need are put before them at the end.
     uint32_t constant(uint32_t value) {
         const auto [at, is_new] = made_constants_.try_emplace(value, 0);
-        if (is_new) put(spv::OpConstant, {uint_, at->second = new_id(), value});
+        if (is_new) at->second = new_id();
         return at->second;
-    }
-
-    uint32_t size_of(uint32_t id, const Place& place) const {  // bytes, up to the end of the last word
-        const Type& type = types_.at(id);
-        switch (type.op) {
-            case spv::OpTypeVector:
-                return 4 * type.operands[1];
-            case spv::OpTypeMatrix:
-                return place.matrix_stride * type.operands[1];
-            case spv::OpTypeArray:
-                return strides_.at(id) * constants_.at(type.operands[1]);
-            case spv::OpTypeStruct:
-                return offsets_.at({id, uint32_t(type.operands.size()) - 1}) + size_of(type.operands.back(), place);
-            case spv::OpTypeRuntimeArray:
-                return 0;
-            default:
-                return 4;
-        }
     }
 
     // The words of a load, each texel fetched once.
@@ -397,6 +378,7 @@ class Rewriter {
 
     SpirvModule in_;
     std::vector<SpirvWords> out_;
+    size_t functions_at_ = 0;  // in out_
     uint32_t bound_, most_views_;
     std::map<uint32_t, Type> types_;
     std::map<uint32_t, uint32_t> constants_, strides_, bindings_, variable_types_;

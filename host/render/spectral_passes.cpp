@@ -15,7 +15,7 @@ SpectralPasses::SpectralPasses(Device& device, const Scene& scene) : scene_(scen
     wavelengths_ = Buffer(device, most_passes * sizeof(Wavelengths), "WavelengthTable");
     values_ =
         Buffer(device, most_passes * scene.features.spectrum_count * sizeof(glm::vec4), "SpectrumValues");
-    colors_ = Buffer(device, color_spectra_count * sizeof(glm::vec3), "ColorSpectra");
+    colors_ = Buffer(device, color_spectra_count * sizeof(glm::vec4), "ColorSpectra");
 }
 
 BufferTable SpectralPasses::buffers() const {

@@ -90,6 +90,9 @@ ShaderLayout compile_layout(ShaderSources sources, const std::string& includes, 
     return reflect_shader(compile_shader(sources, "reflect_record.comp", options).spirv);
 }
 
+// Records start at multiples of it, so that drivers can read whole vectors.
+constexpr uint32_t record_alignment = 16;
+
 const BlockLayout& reflected_block(const ShaderLayout& layout) {
     for (const BlockLayout& block : layout.blocks)
         if (block.name == "Reflected") return block;
@@ -211,7 +214,7 @@ void ClassRegistry::reflect(ClassInfo& info) const {
     const ShaderLayout layout = compile_layout(
         std::move(sources), fmt::format("#include \"{}\"\n", interface.contract), info.record, cache_folder_);
     const BlockLayout& block = reflected_block(layout);
-    info.stride = block.stride;
+    info.stride = (block.stride + record_alignment - 1) / record_alignment * record_alignment;
 
     // The annotations stand behind the members of the struct, one member a line.
     const std::string text = sources_.get(info.file);
@@ -254,11 +257,15 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         if (known != constants.end()) text += known->second.macros;
         text += fmt::format("#include \"{}\"\n", info->file);
         // All classes of an interface are views of one buffer, on one binding.
+        const MemberLayout* last = info->parameters.empty() ? nullptr : &info->parameters.back().member;
+        const uint32_t padding = last ? (info->stride - last->offset - last->size) / 4 : 0;
+        text += fmt::format("struct {0}Row {{ {0} record;{1} }};\n", info->record,
+                            padding ? fmt::format(" uint padding[{}];", padding) : "");
         text += fmt::format(
-            "layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {} {}_records[]; }};\n",
+            "layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {}Row {}_records[]; }};\n",
             int(interface.interface), interface.buffer, info->name, info->record, info->name);
         text +=
-            fmt::format("{0} {1}_record(uint index) {{ {0} r = {1}_records[index]; {2}return r; }}\n",
+            fmt::format("{0} {1}_record(uint index) {{ {0} r = {1}_records[index].record; {2}return r; }}\n",
                         info->record, info->name, known == constants.end() ? "" : known->second.statements);
     }
     return text;

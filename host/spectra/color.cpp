@@ -133,10 +133,10 @@ SpectralTable smooth_spectrum(const glm::dvec3& c) {
     return table;
 }
 
-const std::vector<glm::vec3>& color_spectra() {
-    static const std::vector<glm::vec3> lattice = [] {
+const std::vector<glm::vec4>& color_spectra() {
+    static const std::vector<glm::vec4> lattice = [] {
         constexpr int n = color_lattice;
-        std::vector<glm::vec3> points(3 * n * n * n);
+        std::vector<glm::vec4> points(3 * n * n * n);
         const auto fill_columns = [&](int channel) {
             for (int y = 0; y < n; ++y)
                 for (int x = 0; x < n; ++x) {
@@ -152,7 +152,7 @@ const std::vector<glm::vec3>& color_spectra() {
                         const double g = level < 0.5 ? 2 * level * level : 1 - 2 * (1 - level) * (1 - level);
                         if (k == n / 2) middle = glm::dvec3(points[((channel * n + n / 2) * n + y) * n + x]);
                         middle = fit_smooth_spectrum(ratios * g, middle);
-                        points[((channel * n + z) * n + y) * n + x] = glm::vec3(middle);
+                        points[((channel * n + z) * n + y) * n + x] = glm::vec4(middle, 0);
                     }
                 }
         };

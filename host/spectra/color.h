@@ -35,7 +35,7 @@ SpectralTable smooth_spectrum(const glm::dvec3& coefficients);
 // above.
 constexpr uint32_t color_lattice = 24;  // points an axis
 constexpr size_t color_spectra_count = 3 * size_t(color_lattice) * color_lattice * color_lattice;
-const std::vector<glm::vec3>& color_spectra();
+const std::vector<glm::vec4>& color_spectra();
 
 // The scale of radiances on the device: the luminance of a radiance of 1 W / (m² sr nm) at all wavelengths,
 // cd/m². Divided into its units, an even spectrum of luminance 1 is 1.

@@ -46,7 +46,7 @@ float max_component(Spectrum s) { return max(max(s.x, s.y), max(s.z, s.w)); }
 
 // Smooth spectra of colours (Jakob & Hanika 2019; host/spectra/color.h): coefficients on a lattice of the greatest channel,
 // and the ratios of the two others to it.
-layout(scalar, set = 0) readonly buffer ColorSpectra { vec3 color_spectra[]; };
+layout(scalar, set = 0) readonly buffer ColorSpectra { vec4 color_spectra[]; };
 
 Spectrum factor_of_rgb(vec3 rgb) {
     float greatest = max(rgb.x, max(rgb.y, rgb.z));
@@ -66,7 +66,7 @@ Spectrum factor_of_rgb(vec3 rgb) {
         vec3 part = mix(1.0 - f, f, vec3(corner));
         uvec3 p = cell + corner;
         c += part.x * part.y * part.z *
-             color_spectra[((channel * COLOR_LATTICE + p.z) * COLOR_LATTICE + p.y) * COLOR_LATTICE + p.x];
+             color_spectra[((channel * COLOR_LATTICE + p.z) * COLOR_LATTICE + p.y) * COLOR_LATTICE + p.x].xyz;
     }
     Spectrum t = (wavelengths[batch_pass].nm - 360.0) * (1.0 / 470.0);
     Spectrum x = (c.x * t + c.y) * t + c.z;
