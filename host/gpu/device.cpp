@@ -124,6 +124,18 @@ VkQueueFlags queue_flags(bool for_windows) {
     return VK_QUEUE_COMPUTE_BIT | (for_windows ? VK_QUEUE_GRAPHICS_BIT : 0);
 }
 
+// Than storage buffers (host/gpu/texel_reads.h)? Lavapipe compiles the fetch of a texel once for all kernels since Mesa 23.3; with
+// AVX-512 it gathers from storage buffers by one instruction. ETENDUE_READS=texels or =addresses decides for whoever measures.
+bool reads_texels_faster(const VkPhysicalDeviceDriverProperties& driver, uint32_t version) {
+    if (const char* reads = std::getenv("ETENDUE_READS")) return std::string_view(reads) == "texels";
+    if (driver.driverID != VK_DRIVER_ID_MESA_LLVMPIPE || version < VK_MAKE_VERSION(24, 0, 0)) return false;
+#if defined(__x86_64__) || defined(__i386__)
+    return !__builtin_cpu_supports("avx512f");
+#else
+    return true;
+#endif
+}
+
 DeviceDescription describe(VkPhysicalDevice device, uint32_t index, bool for_windows) {
     DeviceDescription d;
     d.index = index;
@@ -144,10 +156,7 @@ DeviceDescription describe(VkPhysicalDevice device, uint32_t index, bool for_win
     d.subgroup_size = subgroup.subgroupSize;
     d.max_buffer_range = p.limits.maxStorageBufferRange;
     d.max_allocation = maintenance.maxMemoryAllocationSize;
-    // Since Mesa 24 lavapipe compiles the fetch of a texel once for all kernels.
-    const char* reads = std::getenv("ETENDUE_READS");
-    const bool by_texel = driver.driverID == VK_DRIVER_ID_MESA_LLVMPIPE && p.driverVersion >= VK_MAKE_VERSION(24, 0, 0);
-    if (reads ? std::string_view(reads) == "texels" : by_texel) {
+    if (reads_texels_faster(driver, p.driverVersion)) {
         d.max_texels = p.limits.maxTexelBufferElements;
         d.max_texel_buffers = p.limits.maxPerStageDescriptorSampledImages;
     }
