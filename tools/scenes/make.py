@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the example scenes: tools/make_scenes.py [FOLDER], scenes/ by default.
+"""Writes the example scenes: tools/scenes/make.py [FOLDER], scenes/ by default.
 
 A scene is a function here that returns a Gltf with its expected value in words; those words go into the file
 (scenes[0].extras.expected) and into the folder's README.md.
@@ -11,8 +11,7 @@ import sys
 import textwrap
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-from gltf_builder import Gltf, facing, look_along  # noqa: E402
+from gltf_builder import Gltf, facing, look_along
 
 # Complex refractive indices at about 630, 550 and 465 nm (Johnson & Christy 1972 for gold and copper).
 GOLD = {"eta": [0.18, 0.42, 1.37], "k": [3.42, 2.35, 1.77]}
@@ -842,14 +841,14 @@ SCENES = [
 
 README = """# Example scenes
 
-Written by `tools/make_scenes.py`, which says how each is built; change the scenes there. Render one with
+Written by `tools/scenes/make.py`, which says how each is built; change the scenes there. Render one with
 `build/release/etendue render scenes/example.gltf -o example.exr`. What each must show:
 
 """
 
 
 def main():
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent / "scenes"
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parents[2] / "scenes"
     folder.mkdir(parents=True, exist_ok=True)
     lines = []
     for make in SCENES:

@@ -204,7 +204,7 @@ class Gltf:
         if self.lights:
             extensions["KHR_lights_punctual"] = {"lights": self.lights}
         root = {
-            "asset": {"version": "2.0", "generator": "tools/make_scenes.py"},
+            "asset": {"version": "2.0", "generator": "tools/scenes/make.py"},
             "extensionsUsed": sorted(self.extensions),
             "extensions": extensions,
             "scene": 0,
