@@ -76,28 +76,26 @@ BsdfSample scattered(vec3 wi, uint event) { return BsdfSample(wi, Spectrum(0), 0
 
 #include "generated/surface_classes.glsl"
 
-#define PAIR_CASE(tag, Struct, name) \
-    case tag: result = name##_evaluate(name##_resolve(name##_record(record_index(ref)), c), c, wo, wi); break;
+#ifndef ONLY_SURFACE_CLASS
+#define ALL_SURFACE_CLASSES SURFACE_CLASSES
+#endif
+
+// Of a surface of any class, in a kernel for one class too.
 SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
     SurfacePair result = no_surface_pair();
-    switch (record_tag(ref)) { SURFACE_CLASSES(PAIR_CASE) }
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) \
+    case tag: result = name##_evaluate(name##_resolve(name##_record(record_index(ref)), c), c, wo, wi); break;
+        ALL_SURFACE_CLASSES(CASE)
+#undef CASE
+    }
     return result;
 }
-// Of a surface of any class, in a kernel for one class too.
-#ifdef ONLY_SURFACE_CLASS
-SurfacePair surface_pair_of_any(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
-    SurfacePair result = no_surface_pair();
-    switch (record_tag(ref)) { ALL_SURFACE_CLASSES(PAIR_CASE) }
-    return result;
-}
-#else
-#define surface_pair_of_any surface_pair
-#endif
-#undef PAIR_CASE
 
-// All of an event at once: scattering towards wi, and a sample. The class is visited and its textures are read once.
+// All of an event at once: scattering towards one or two directions, and a sample. The class is visited and its textures are read
+// once.
 struct SurfaceEvent {
-    SurfacePair pair;
+    SurfacePair pair, second;
     BsdfSample next;
     float next_pdf_reverse;
 };
@@ -111,18 +109,21 @@ void complete(inout SurfaceEvent event, SurfacePair pair) {
     if (!(pair.pdf > 0.0)) event.next = no_bsdf_sample();
 }
 
-SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 u) {
-    SurfaceEvent result = SurfaceEvent(no_surface_pair(), no_bsdf_sample(), 0.0);
+// `asked` is 1 where nothing is wanted of the second direction, else 2.
+SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 second, uint asked, vec3 u) {
+    SurfaceEvent result = SurfaceEvent(no_surface_pair(), no_surface_pair(), no_bsdf_sample(), 0.0);
     switch (record_tag(ref)) {
-// A loop over both directions, so that the code of `evaluate` stands once.
+// A loop over all directions, so that the code of `evaluate` stands once.
 #define CASE(tag, Struct, name)                                                              \
     case tag: {                                                                             \
         Struct r = name##_resolve(name##_record(record_index(ref)), c);                     \
         result.next = name##_sample(r, c, wo, u);                                           \
-        for (uint i = 0u; i < 2u; ++i) {                                                    \
-            SurfacePair pair = name##_evaluate(r, c, wo, i == 0u ? wi : result.next.wi);    \
-            if (i == 0u) result.pair = pair;                                                \
-            else complete(result, pair);                                                    \
+        for (uint i = 0u; i <= asked; ++i) {                                                \
+            vec3 towards = i == asked ? result.next.wi : i == 0u ? wi : second;             \
+            SurfacePair pair = name##_evaluate(r, c, wo, towards);                          \
+            if (i == asked) complete(result, pair);                                         \
+            else if (i == 0u) result.pair = pair;                                           \
+            else result.second = pair;                                                      \
         }                                                                                   \
         break;                                                                              \
     }
@@ -132,7 +133,7 @@ SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 u)
     return result;
 }
 
-BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) { return surface_event(ref, c, wo, wo, u).next; }
+BsdfSample surface_sample(uint ref, SurfaceContext c, vec3 wo, vec3 u) { return surface_event(ref, c, wo, wo, wo, 1u, u).next; }
 
 Spectrum surface_transparency(uint ref, SurfaceContext c, vec3 wo) {
     Spectrum result = Spectrum(0);

@@ -226,6 +226,7 @@ BsdfSample phase_event(ScatteringPoint s, vec2 u) {
 }
 #endif
 
+// Of a surface of any class, in a kernel for one class too.
 SurfacePair scattering_pair(ScatteringPoint s, vec3 wi) {
 #if HAS_SCATTERING
     if (in_volume(s)) return phase_pair(s, wi);
@@ -233,19 +234,13 @@ SurfacePair scattering_pair(ScatteringPoint s, vec3 wi) {
     return surface_pair(s.surface, s.context, s.wo, wi);
 }
 
-// Of a surface of any class, in a kernel for one class too.
-SurfacePair scattering_pair_of_any(ScatteringPoint s, vec3 wi) {
-#if HAS_SCATTERING
-    if (in_volume(s)) return phase_pair(s, wi);
-#endif
-    return surface_pair_of_any(s.surface, s.context, s.wo, wi);
-}
-
-SurfaceEvent scattering_event(ScatteringPoint s, vec3 wi, vec3 u) {
-    SurfaceEvent event = surface_event(s.surface, s.context, s.wo, wi, u);
+// See surface_event(): scattering towards one or two directions, and a sample.
+SurfaceEvent scattering_event(ScatteringPoint s, vec3 wi, vec3 second, uint asked, vec3 u) {
+    SurfaceEvent event = surface_event(s.surface, s.context, s.wo, wi, second, asked, u);
 #if HAS_SCATTERING
     if (in_volume(s)) {
         event.pair = phase_pair(s, wi);
+        event.second = phase_pair(s, second);
         event.next = phase_event(s, u.xy);
         event.next_pdf_reverse = event.next.pdf;
     }

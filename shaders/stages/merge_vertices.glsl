@@ -21,36 +21,47 @@ bool lies_on_same(SurfacePoint p, ScatteringPoint s, LightVertex y, float radius
     return dot(decode_octahedral_16(y.normal), s.normal) > 0.7 && abs(dot(y.position - p.position, s.normal)) < 0.5 * radius;
 }
 
-void merge_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis) {
-    float radius = merge_radius(p.position);
-    Spectrum inner = Spectrum(0), outer = Spectrum(0);
+// What merging has brought so far.
+struct Merging {
     GridQuery query;
-    begin_query(query, p.position, radius);
-    uint index;
-    vec3 position;
-    while (next_candidate(query, index, position)) {
-        LightVertex y = light_vertices[index];
-        vec3 light_direction = decode_octahedral(y.direction);
-        vec3 d = y.position - p.position;
-        float cosine = in_volume(s) ? 1.0 : dot(light_direction, s.normal);
-        vec3 wi = light_direction * s.frame;
-        if (!lies_on_same(p, s, y, radius) || !is_on_one_side(s, light_direction, wi)) continue;
-        SurfacePair pair = scattering_pair(s, wi);
-        float reverse = pair.pdf_reverse * frame_probability(s, light_direction, -path.direction);
-        float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
-        Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));
-        brought *= meeting_share(path, y.previous);
-        if (2.0 * dot(d, d) < square(radius)) inner += brought;
-        else outer += brought;
-    }
-    Spectrum scale = path.throughput * (forward_pass.path_flux / merge_size(in_volume(s), radius));
+    float radius;
+    Spectrum inner, outer;  // of vertices within radius / sqrt(2), and beyond
+};
+
+void begin_merging(out Merging m, SurfacePoint p) {
+    m.radius = merge_radius(p.position);
+    m.inner = m.outer = Spectrum(0);
+    begin_query(m.query, p.position, m.radius);
+}
+
+// Does the vertex merge, that lies within the radius? Then `wi` is the direction, in the frame, that its light comes from.
+bool merges_with(Merging m, SurfacePoint p, ScatteringPoint s, LightVertex y, out vec3 wi) {
+    vec3 light_direction = decode_octahedral(y.direction);
+    wi = light_direction * s.frame;
+    return lies_on_same(p, s, y, m.radius) && is_on_one_side(s, light_direction, wi);
+}
+
+void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, LightVertex y, SurfacePair pair) {
+    vec3 light_direction = decode_octahedral(y.direction);
+    vec3 d = y.position - p.position;
+    float cosine = in_volume(s) ? 1.0 : dot(light_direction, s.normal);
+    float reverse = pair.pdf_reverse * frame_probability(s, light_direction, -path.direction);
+    float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
+    Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));
+    brought *= meeting_share(path, y.previous);
+    if (2.0 * dot(d, d) < square(m.radius)) m.inner += brought;
+    else m.outer += brought;
+}
+
+void end_merging(Merging m, inout Path path, SurfacePoint p, ScatteringPoint s) {
+    Spectrum scale = path.throughput * (forward_pass.path_flux / merge_size(in_volume(s), m.radius));
 #if HAS_SCATTERING
     if (in_volume(s)) {
         Spectrum scattering = medium_scattering(s.medium_above, p.position);
         scale = mix(scale / scattering, Spectrum(0), lessThanEqual(scattering, Spectrum(0)));
     }
 #endif
-    path.radiance += scale * (inner + outer);
+    path.radiance += scale * (m.inner + m.outer);
     float inner_share = in_volume(s) ? 2.0 * sqrt(2.0) - 1.0 : 1.0;  // size of the ball or disk over that of the smaller, less one
-    path.bias += scale * (outer - inner_share * inner);
+    path.bias += scale * (m.outer - inner_share * m.inner);
 }

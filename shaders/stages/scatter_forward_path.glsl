@@ -99,7 +99,7 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
     ReceiverSample r = ReceiverSample(vec3(0, 0, 1), 0.0, vec2(0), 0.0, 0.0);
     if (!is_delta) r = receiver_connect(forward_pass.receiver, p.position, sample_2d(path.random), film_aspect());
     vec3 wi = r.direction * s.frame;
-    SurfaceEvent event = scattering_event(s, wi, sample_3d(path.random));
+    SurfaceEvent event = scattering_event(s, wi, wi, 1u, sample_3d(path.random));
     if (r.pdf > 0.0 && is_on_one_side(s, r.direction, wi))
         shadow = connect_receiver(path, p, s, r, event.pair, mis);
     if (!follow_sample(path, p, s, event, mis)) {

@@ -7,13 +7,10 @@
 #include "lib/events.glsl"
 #include "lib/traversal.glsl"
 #if CONNECT_VERTICES
-#include "stages/connect_vertices.glsl"
+#include "stages/meet_vertices.glsl"
 #endif
-#if MERGE_VERTICES
-#include "stages/merge_vertices.glsl"
 #if BEAMS
 #include "stages/merge_along.glsl"
-#endif
 #endif
 
 float passage(Path path) {
@@ -177,21 +174,26 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     if (!is_delta && !forward_brings(path)) l = sample_light(path, p.position, sampled_light);
 #endif
     vec3 wi = l.direction * s.frame;
-    SurfaceEvent event = scattering_event(s, wi, sample_3d(path.random));
+    vec3 u = sample_3d(path.random);
+#if CONNECT_VERTICES
+    Connection connection;
+    connection.is_there = false, connection.wi = wi;
+    if (!is_delta) connection = choose_vertex(path.random, p, s);
+    SurfaceEvent event = scattering_event(s, wi, connection.wi, 2u, u);
+#else
+    SurfaceEvent event = scattering_event(s, wi, wi, 1u, u);
+#endif
 #if LIGHT_COUNT > 0
     // No light where the shading normal and the surface disagree on which side it is.
     if (is_on_one_side(s, l.direction, wi))
         shadow = connect_light(path, p, s, l, sampled_light, event.pair, mis);
 #endif
 #if CONNECT_VERTICES
-    if (!is_delta) vertex_shadow = connect_vertices(path, p, s, mis);
-#endif
-#if MERGE_VERTICES
+    bool merges = !is_delta && mis.merging > 0.0;
 #if BEAMS
-    if (!is_delta && !mis.along && mis.merging > 0.0) merge_vertices(path, p, s, mis);  // else the ray has merged
-#else
-    if (!is_delta && mis.merging > 0.0) merge_vertices(path, p, s, mis);
+    if (mis.along) merges = false;  // the ray has merged
 #endif
+    vertex_shadow = meet_vertices(path, p, s, mis, connection, event.second, merges);
 #endif
 #if FORWARD_ONLY
     if (forward_brings(path) && (event.next.event & EVENT_DELTA) == 0u) return false;
