@@ -26,11 +26,11 @@ layout(scalar, set = 0) readonly buffer Materials { Material materials[]; };
 
 bool material_emits_both_sides(uint material) { return (materials[material].flags & MATERIAL_EMITS_BOTH_SIDES) != 0u; }
 
-Spectrum material_mean_emission(uint material) { return spectrum_value(materials[material].mean_emission); }
+Spectrum material_mean_emission(uint material) { return untinted_value(materials[material].mean_emission); }
 
 // Radiance that leaves a point of the surface, on the side of the geometric normal (front) or the other.
 Spectrum material_emission(uint material, bool front, vec2 uv0, vec2 uv1) {
     if (!front && !material_emits_both_sides(material)) return Spectrum(0);
-    return spectrum_value(materials[material].emission) *
+    return untinted_value(materials[material].emission) *
            factor_of_rgb(texture_value(materials[material].emission_texture, uv0, uv1).rgb);
 }

@@ -92,52 +92,39 @@ float ggx_dielectric_loss(float mu, float alpha, float eta) {
     return clamp(1.0 - sum, 5e-4, 1.0);
 }
 
-// 2 ∫ ggx_dielectric_loss(mu, alpha, eta) mu dmu: the logarithm is a polynomial in alpha^(1/4) and the index.
-float ggx_dielectric_average_loss(float alpha, float eta) {
+// 2 ∫ ggx_dielectric_loss(mu, alpha, eta) mu dmu for eta and for 1 / eta: logarithms are polynomials in alpha^(1/4) and the index.
+vec2 ggx_dielectric_average_losses(float alpha, float eta) {
     float v = 2.0 * sqrt(sqrt(max(alpha, 1e-3))) - 1.3;
     float u = 4.0 * clamp(min(eta, 1.0 / eta), 1.0 / 2.4, 1.0 / 1.2) - 2.52;
-    float sum;
-    if (eta > 1.0) {
-        sum = -5.652 + u * (3.798 + u * (-5.564 + u * (-0.545 + u * -1.762)));
-        sum = -0.177 + u * (0.002 + u * (6.250 + u * (4.329 + u * 0.133))) + v * sum;
-        sum = 9.823 + u * (-5.463 + u * (5.654 + u * (-2.414 + u * 3.692))) + v * sum;
-        sum = -2.476 + u * (0.871 + u * (-9.132 + u * (-4.607 + u * -0.136))) + v * sum;
-        sum = -4.517 + u * (2.096 + u * (0.272 + u * (4.242 + u * -2.465))) + v * sum;
-        sum = 1.130 + u * (-0.785 + u * (3.812 + u * (0.476 + u * -0.370))) + v * sum;
-        sum = -0.206 + u * (0.197 + u * (-1.882 + u * (-1.792 + u * 1.406))) + v * sum;
-        sum = 4.296 + u * (-0.167 + u * (0.163 + u * (0.741 + u * -0.428))) + v * sum;
-        sum = -3.956 + u * (-0.128 + u * (0.164 + u * (-0.085 + u * 0.005))) + v * sum;
-    } else {
-        sum = -11.627 + u * (12.761 + u * (-30.515 + u * (-21.897 + u * 55.378)));
-        sum = 0.504 + u * (-2.294 + u * (22.459 + u * (-7.883 + u * -30.105))) + v * sum;
-        sum = 18.190 + u * (-18.250 + u * (24.601 + u * (36.073 + u * -56.662))) + v * sum;
-        sum = -6.180 + u * (6.896 + u * (-24.533 + u * (0.929 + u * 37.470))) + v * sum;
-        sum = -5.594 + u * (6.040 + u * (2.328 + u * (-16.757 + u * 8.780))) + v * sum;
-        sum = 3.421 + u * (-2.740 + u * (2.407 + u * (3.084 + u * -7.536))) + v * sum;
-        sum = -3.234 + u * (-0.313 + u * (-0.170 + u * (1.253 + u * -0.492))) + v * sum;
-        sum = 4.562 + u * (-0.252 + u * (-0.394 + u * (-0.129 + u * 0.636))) + v * sum;
-        sum = -2.467 + u * (0.081 + u * (-0.029 + u * (-0.107 + u * -0.081))) + v * sum;
-    }
-    return exp(sum);
+    float denser, thinner;  // what lies behind the surface
+    denser = -5.652 + u * (3.798 + u * (-5.564 + u * (-0.545 + u * -1.762)));
+    denser = -0.177 + u * (0.002 + u * (6.250 + u * (4.329 + u * 0.133))) + v * denser;
+    denser = 9.823 + u * (-5.463 + u * (5.654 + u * (-2.414 + u * 3.692))) + v * denser;
+    denser = -2.476 + u * (0.871 + u * (-9.132 + u * (-4.607 + u * -0.136))) + v * denser;
+    denser = -4.517 + u * (2.096 + u * (0.272 + u * (4.242 + u * -2.465))) + v * denser;
+    denser = 1.130 + u * (-0.785 + u * (3.812 + u * (0.476 + u * -0.370))) + v * denser;
+    denser = -0.206 + u * (0.197 + u * (-1.882 + u * (-1.792 + u * 1.406))) + v * denser;
+    denser = 4.296 + u * (-0.167 + u * (0.163 + u * (0.741 + u * -0.428))) + v * denser;
+    denser = -3.956 + u * (-0.128 + u * (0.164 + u * (-0.085 + u * 0.005))) + v * denser;
+    thinner = -11.627 + u * (12.761 + u * (-30.515 + u * (-21.897 + u * 55.378)));
+    thinner = 0.504 + u * (-2.294 + u * (22.459 + u * (-7.883 + u * -30.105))) + v * thinner;
+    thinner = 18.190 + u * (-18.250 + u * (24.601 + u * (36.073 + u * -56.662))) + v * thinner;
+    thinner = -6.180 + u * (6.896 + u * (-24.533 + u * (0.929 + u * 37.470))) + v * thinner;
+    thinner = -5.594 + u * (6.040 + u * (2.328 + u * (-16.757 + u * 8.780))) + v * thinner;
+    thinner = 3.421 + u * (-2.740 + u * (2.407 + u * (3.084 + u * -7.536))) + v * thinner;
+    thinner = -3.234 + u * (-0.313 + u * (-0.170 + u * (1.253 + u * -0.492))) + v * thinner;
+    thinner = 4.562 + u * (-0.252 + u * (-0.394 + u * (-0.129 + u * 0.636))) + v * thinner;
+    thinner = -2.467 + u * (0.081 + u * (-0.029 + u * (-0.107 + u * -0.081))) + v * thinner;
+    return exp(eta > 1.0 ? vec2(denser, thinner) : vec2(thinner, denser));
 }
 
-// Part of the multiply scattered light that is transmitted, seen from the side where the index ratio is eta
+// Part of the multiply scattered light that is transmitted, seen from the side where the index ratio is eta, and from the other
 // (Kulla & Conty 2017): x (1 - F_avg), with x = loss_far / (loss_near + loss_far) so that
 // n² loss T is the same from both sides, which makes the lobes reciprocal. F_avg is their fit for eta >= 1;
 // the other side's follows from n² (1 - F_avg) being the same.
-float ggx_dielectric_multiscatter_transmission(float alpha, float eta) {
+vec2 ggx_dielectric_multiscatter_transmissions(vec2 average_losses, float eta) {
     float index = max(eta, 1.0 / eta);
     float through = 1.0 - (index - 1.0) / (4.08567 + 1.00071 * index);
-    if (eta < 1.0) through *= eta * eta;
-    float near = ggx_dielectric_average_loss(alpha, eta), far = ggx_dielectric_average_loss(alpha, 1.0 / eta);
-    return through * far / (near + far);
-}
-
-// f |cos wi| of that light in power transport, 1/sr; mu_o > 0, mu_i < 0 where it is transmitted.
-float ggx_dielectric_multiscatter(float mu_o, float mu_i, float alpha, float eta) {
-    float transmitted = ggx_dielectric_multiscatter_transmission(alpha, eta);
-    float eta_i = mu_i > 0.0 ? eta : 1.0 / eta;
-    float losses = ggx_dielectric_loss(mu_o, alpha, eta) * ggx_dielectric_loss(abs(mu_i), alpha, eta_i);
-    return (mu_i > 0.0 ? 1.0 - transmitted : transmitted) * losses * abs(mu_i) /
-           (PI * ggx_dielectric_average_loss(alpha, eta_i));
+    vec2 sides = through * (eta < 1.0 ? vec2(eta * eta, 1.0) : vec2(1.0, 1.0 / (eta * eta)));
+    return sides * average_losses.yx / (average_losses.x + average_losses.y);
 }

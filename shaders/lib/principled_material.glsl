@@ -73,13 +73,15 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c) {
     PrincipledMaterial m;
     float alpha = clamp(r.base_color.a, 0.0, 1.0);
     m.coverage = r.alpha_mode == 0u ? 1.0 : r.alpha_mode == 1u ? (alpha < r.alpha_cutoff ? 0.0 : 1.0) : alpha;
-    m.color = factor_of_rgb(clamp(r.base_color.rgb, vec3(0), vec3(1)));
+    Spectrum specular;
+    factors_of_rgb(clamp(r.base_color.rgb, vec3(0), vec3(1)), clamp(r.diffuse_transmission_color, vec3(0), vec3(1)),
+                   clamp(r.sheen_color, vec3(0), vec3(1)), max(r.specular_color, vec3(0)), m.color, m.sent, m.sheen, specular);
     m.metal = clamp(r.metallic, 0.0, 1.0);
     m.transmitter = (1.0 - m.metal) * clamp(r.transmission, 0.0, 1.0);
     m.opaque = max((1.0 - m.metal) - m.transmitter, 0.0);
     m.thin = r.thin;
     m.f90 = clamp(r.specular, 0.0, 1.0);
-    m.tint = m.f90 * factor_of_rgb(max(r.specular_color, vec3(0)));
+    m.tint = m.f90 * specular;
     m.f0 = min(square((r.ior - 1.0) / (r.ior + 1.0)) * m.tint, Spectrum(m.f90));
     float width = square(clamp(r.roughness, 0.0, 1.0));
 #ifdef ABSENT_principled_anisotropy
@@ -97,8 +99,7 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c) {
                                                interface_is_smooth(width, c.ior_above, c.ior_below));
     m.importance = c.importance;
     m.through = clamp(r.diffuse_transmission, 0.0, 1.0);
-    m.sent = Spectrum(0);
-    if (m.through > 0.0) m.sent = m.through * factor_of_rgb(clamp(r.diffuse_transmission_color, vec3(0), vec3(1)));
+    m.sent *= m.through;
 #ifndef ABSENT_principled_iridescence
     m.iridescence = clamp(r.iridescence, 0.0, 1.0);
     m.film = r.iridescence_ior, m.film_thickness = r.iridescence_thickness_maximum;
@@ -110,11 +111,7 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c) {
 #if COAT_HAS_NORMAL
     m.coat_normal_above = m.coat_normal = r.clearcoat_normal;
 #endif
-    m.sheen = Spectrum(0), m.sheen_most = 0.0, m.sheen_roughness = r.sheen_roughness;
-    if (any(greaterThan(r.sheen_color, vec3(0)))) {
-        m.sheen = factor_of_rgb(clamp(r.sheen_color, vec3(0), vec3(1)));
-        m.sheen_most = max_component(m.sheen);
-    }
+    m.sheen_most = max_component(m.sheen), m.sheen_roughness = r.sheen_roughness;
     return m;
 }
 

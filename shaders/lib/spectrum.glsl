@@ -73,6 +73,18 @@ Spectrum factor_of_rgb(vec3 rgb) {
     return scale * (0.5 + 0.5 * x * inversesqrt(1.0 + x * x));
 }
 
+// Of four colours, in a loop, so that the code of one stands once.
+void factors_of_rgb(vec3 a, vec3 b, vec3 c, vec3 d, out Spectrum of_a, out Spectrum of_b, out Spectrum of_c, out Spectrum of_d) {
+    of_a = of_b = of_c = of_d = Spectrum(0);
+    for (uint i = 0u; i < 4u; ++i) {
+        Spectrum factor = factor_of_rgb(i == 0u ? a : i == 1u ? b : i == 2u ? c : d);
+        if (i == 0u) of_a = factor;
+        else if (i == 1u) of_b = factor;
+        else if (i == 2u) of_c = factor;
+        else of_d = factor;
+    }
+}
+
 // Light of a colour, on D65, which is the first of the spectra.
 Spectrum radiance_of_rgb(vec3 rgb) {
     float scale = 2.0 * max(rgb.x, max(rgb.y, rgb.z));
@@ -80,8 +92,13 @@ Spectrum radiance_of_rgb(vec3 rgb) {
     return spectrum_values[batch_pass * SPECTRUM_COUNT] * scale * factor_of_rgb(rgb / scale);
 }
 
+// Of a parameter that scale_spectrum() is never applied to: less code.
+Spectrum untinted_value(SpectrumRef ref) {
+    return spectrum_values[batch_pass * SPECTRUM_COUNT + (ref.table & ~TINTED_SPECTRUM)];
+}
+
 Spectrum spectrum_value(SpectrumRef ref) {
-    Spectrum value = spectrum_values[batch_pass * SPECTRUM_COUNT + (ref.table & ~TINTED_SPECTRUM)];
+    Spectrum value = untinted_value(ref);
 #if HAS_TEXTURES || HAS_VERTEX_ATTRIBUTES
     if ((ref.table & TINTED_SPECTRUM) != 0u) value *= factor_of_rgb(ref.rgb);
 #endif
@@ -104,7 +121,11 @@ vec3 spectrum_rgb(Spectrum s) { return s; }
 float brightness(Spectrum s) { return luminance(s); }
 float max_component(Spectrum s) { return max(s.x, max(s.y, s.z)); }
 Spectrum factor_of_rgb(vec3 rgb) { return rgb; }
+void factors_of_rgb(vec3 a, vec3 b, vec3 c, vec3 d, out Spectrum of_a, out Spectrum of_b, out Spectrum of_c, out Spectrum of_d) {
+    of_a = a, of_b = b, of_c = c, of_d = d;
+}
 Spectrum radiance_of_rgb(vec3 rgb) { return rgb; }
+Spectrum untinted_value(SpectrumRef ref) { return ref.rgb; }
 Spectrum spectrum_value(SpectrumRef ref) { return ref.rgb; }
 void scale_spectrum(inout SpectrumRef ref, vec3 color) { ref.rgb *= color; }
 

@@ -59,20 +59,21 @@ vec4 texel_value(Texture t, uint x, uint y) {
     return value;
 }
 
-// The two texels beside coordinate u on an axis of `size` texels, and the weight of the second. The coordinate is
+// The two texels beside coordinates u on each axis of `size` texels (`low` and `high`), and the weight of the second. Coordinates are
 // brought into [0, 1] first; at the ends the neighbour is the other end's texel (repeat) or the same one again.
-void texel_pair(float u, uint size, uint wrap, bool nearest, out uvec2 pair, out float weight) {
-    float folded = 1.0 - abs(u - 2.0 * floor(0.5 * u) - 1.0);
-    float inside = wrap == WRAP_REPEAT ? u - floor(u) : wrap == WRAP_MIRROR ? folded : clamp(u, 0.0, 1.0);
-    inside = inside >= 0.0 ? min(inside, 1.0) : 0.0;  // a coordinate that overflowed to NaN is taken for 0
-    float x = inside * float(size) - (nearest ? 0.0 : 0.5);
-    int last = int(size) - 1;
-    int low = clamp(int(floor(x)), -1, last);
-    int high = nearest ? low : low + 1;
-    weight = nearest ? 0.0 : x - float(low);
-    low = low < 0 ? (wrap == WRAP_REPEAT ? last : 0) : low;
-    high = high > last ? (wrap == WRAP_REPEAT ? 0 : last) : high;
-    pair = uvec2(low, high);
+void texel_pairs(vec2 u, ivec2 size, uvec2 wrap, bool nearest, out ivec2 low, out ivec2 high, out vec2 weight) {
+    bvec2 repeats = equal(wrap, uvec2(WRAP_REPEAT));
+    vec2 folded = 1.0 - abs(u - 2.0 * floor(0.5 * u) - 1.0);
+    vec2 inside = mix(mix(clamp(u, 0.0, 1.0), folded, equal(wrap, uvec2(WRAP_MIRROR))), u - floor(u), repeats);
+    // A coordinate that overflowed to NaN is taken for 0.
+    inside = mix(vec2(0), min(inside, 1.0), greaterThanEqual(inside, vec2(0)));
+    vec2 x = inside * vec2(size) - (nearest ? 0.0 : 0.5);
+    ivec2 last = size - 1;
+    low = clamp(ivec2(floor(x)), ivec2(-1), last);
+    high = nearest ? low : low + 1;
+    weight = nearest ? vec2(0) : x - vec2(low);
+    low = mix(low, mix(ivec2(0), last, repeats), lessThan(low, ivec2(0)));
+    high = mix(high, mix(last, ivec2(0), repeats), greaterThan(high, last));
 }
 
 // RGBA of a texture at a surface point with texture coordinates uv0 and uv1; one where there is no texture.
@@ -81,14 +82,19 @@ vec4 texture_value(TextureRef ref, vec2 uv0, vec2 uv1) {
     Texture t = texture_records[ref.index];
     vec2 set = t.uv_set == 0u ? uv0 : uv1;
     vec2 uv = vec2(dot(t.uv_matrix.xy, set), dot(t.uv_matrix.zw, set)) + t.uv_offset;
-    bool nearest = (t.format_and_wrap & 64u) != 0u;
-    uvec2 x, y;
+    ivec2 low, high;
     vec2 weight;
-    texel_pair(uv.x, t.width, (t.format_and_wrap >> 2) & 3u, nearest, x, weight.x);
-    texel_pair(uv.y, t.height, (t.format_and_wrap >> 4) & 3u, nearest, y, weight.y);
-    vec4 upper = mix(texel_value(t, x.x, y.x), texel_value(t, x.y, y.x), weight.x);
-    vec4 lower = mix(texel_value(t, x.x, y.y), texel_value(t, x.y, y.y), weight.x);
-    return mix(upper, lower, weight.y);
+    texel_pairs(uv, ivec2(t.width, t.height), (uvec2(t.format_and_wrap) >> uvec2(2, 4)) & 3u,
+                (t.format_and_wrap & 64u) != 0u, low, high, weight);
+    vec4 left = vec4(0), row = vec4(0), upper = vec4(0);
+    for (uint i = 0u; i < 4u; ++i) {  // a loop, so that the code of a texel stands once
+        bool is_right = (i & 1u) != 0u, is_lower = i > 1u;
+        vec4 texel = texel_value(t, uint(is_right ? high.x : low.x), uint(is_lower ? high.y : low.y));
+        if (is_right) row = mix(left, texel, weight.x);
+        if (i == 1u) upper = row;
+        left = texel;
+    }
+    return mix(upper, row, weight.y);
 }
 
 #endif

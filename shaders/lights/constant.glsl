@@ -10,18 +10,18 @@ vec3 constant_direction(vec2 u) {
 }
 
 LightSample constant_sample_towards(ConstantEnvironment r, vec3 point, vec2 u) {
-    return LightSample(constant_direction(u), INFINITY, spectrum_value(r.radiance), 0.25 * INV_PI,
+    return LightSample(constant_direction(u), INFINITY, untinted_value(r.radiance), 0.25 * INV_PI,
                        0.25 * INV_PI * outer_disk_pdf(scene_bounds()), false);
 }
 
 float constant_pdf_towards(ConstantEnvironment r, vec3 point, vec3 direction, LightHit hit) { return 0.25 * INV_PI; }
 
-Spectrum constant_radiance(ConstantEnvironment r, vec3 direction, LightHit hit) { return spectrum_value(r.radiance); }
+Spectrum constant_radiance(ConstantEnvironment r, vec3 direction, LightHit hit) { return untinted_value(r.radiance); }
 
 EmittedRay constant_emit(ConstantEnvironment r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
     vec3 direction = constant_direction(u_direction);
     return EmittedRay(outer_disk_point(bounds, direction, u_position), vec3(0), direction, direction,
-                      spectrum_value(r.radiance), 0.25 * INV_PI * outer_disk_pdf(bounds), false, true);
+                      untinted_value(r.radiance), 0.25 * INV_PI * outer_disk_pdf(bounds), false, true);
 }
 
 float constant_pdf_emit(ConstantEnvironment r, SceneBounds bounds, vec3 direction, LightHit hit) {
@@ -29,7 +29,7 @@ float constant_pdf_emit(ConstantEnvironment r, SceneBounds bounds, vec3 directio
 }
 
 float constant_power(ConstantEnvironment r, SceneBounds bounds) {
-    return 4.0 * square(PI * bounds.radius) * luminance(spectrum_value(r.radiance));
+    return 4.0 * square(PI * bounds.radius) * luminance(untinted_value(r.radiance));
 }
 
 void constant_bounds(ConstantEnvironment r, out vec3 lo, out vec3 hi) { lo = vec3(1), hi = vec3(-1); }

@@ -7,7 +7,7 @@ struct DirectionalLight {
 
 LightSample directional_sample_towards(DirectionalLight r, vec3 point, vec2 u) {
     vec3 direction = normalize(r.placement.world_from_local[2]);
-    return LightSample(direction, INFINITY, spectrum_value(r.color) * r.intensity, 1.0, outer_disk_pdf(scene_bounds()), true);
+    return LightSample(direction, INFINITY, untinted_value(r.color) * r.intensity, 1.0, outer_disk_pdf(scene_bounds()), true);
 }
 
 float directional_pdf_towards(DirectionalLight r, vec3 point, vec3 direction, LightHit hit) { return 1.0; }
@@ -16,7 +16,7 @@ Spectrum directional_radiance(DirectionalLight r, vec3 direction, LightHit hit) 
 EmittedRay directional_emit(DirectionalLight r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
     vec3 direction = -normalize(r.placement.world_from_local[2]);
     return EmittedRay(outer_disk_point(bounds, direction, u_position), vec3(0), direction, direction,
-                      spectrum_value(r.color) * r.intensity, outer_disk_pdf(bounds), true, true);
+                      untinted_value(r.color) * r.intensity, outer_disk_pdf(bounds), true, true);
 }
 
 float directional_pdf_emit(DirectionalLight r, SceneBounds bounds, vec3 direction, LightHit hit) {
@@ -24,7 +24,7 @@ float directional_pdf_emit(DirectionalLight r, SceneBounds bounds, vec3 directio
 }
 
 float directional_power(DirectionalLight r, SceneBounds bounds) {
-    return PI * square(bounds.radius) * r.intensity * luminance(spectrum_value(r.color));
+    return PI * square(bounds.radius) * r.intensity * luminance(untinted_value(r.color));
 }
 
 void directional_bounds(DirectionalLight r, out vec3 lo, out vec3 hi) { lo = vec3(1), hi = vec3(-1); }

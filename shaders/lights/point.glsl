@@ -11,7 +11,7 @@ LightSample point_sample_towards(PointLight r, vec3 point, vec2 u) {
     vec3 d = r.placement.world_from_local[3] - point;
     float distance = length(d);
     if (!(distance > 0.0)) return no_light_sample();
-    return LightSample(d / distance, distance, spectrum_value(r.color) * r.intensity, square(distance), 0.25 * INV_PI, true);
+    return LightSample(d / distance, distance, untinted_value(r.color) * r.intensity, square(distance), 0.25 * INV_PI, true);
 }
 
 float point_pdf_towards(PointLight r, vec3 point, vec3 direction, LightHit hit) {
@@ -25,13 +25,13 @@ EmittedRay point_emit(PointLight r, SceneBounds bounds, vec2 u_position, vec2 u_
     float z = 1.0 - 2.0 * u_direction.x;
     vec2 around = cos_sin_turns(u_direction.y) * sqrt(4.0 * u_direction.x * (1.0 - u_direction.x));
     vec3 direction = vec3(around, z);
-    return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction, spectrum_value(r.color) * r.intensity,
+    return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction, untinted_value(r.color) * r.intensity,
                       0.25 * INV_PI, true, true);
 }
 
 float point_pdf_emit(PointLight r, SceneBounds bounds, vec3 direction, LightHit hit) { return 0.25 * INV_PI; }
 
-float point_power(PointLight r, SceneBounds bounds) { return 4.0 * PI * r.intensity * luminance(spectrum_value(r.color)); }
+float point_power(PointLight r, SceneBounds bounds) { return 4.0 * PI * r.intensity * luminance(untinted_value(r.color)); }
 
 void point_bounds(PointLight r, out vec3 lo, out vec3 hi) { lo = hi = r.placement.world_from_local[3]; }
 

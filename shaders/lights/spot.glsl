@@ -43,7 +43,7 @@ LightSample spot_sample_towards(SpotLight r, vec3 point, vec2 u) {
     vec3 direction = d / distance;
     float falloff = spot_falloff(r, -direction);
     if (!(falloff > 0.0)) return no_light_sample();
-    return LightSample(direction, distance, spectrum_value(r.color) * (r.intensity * falloff), square(distance),
+    return LightSample(direction, distance, untinted_value(r.color) * (r.intensity * falloff), square(distance),
                        falloff / spot_solid_angle(spot_cone_edges(r)), true);
 }
 
@@ -71,7 +71,7 @@ EmittedRay spot_emit(SpotLight r, SceneBounds bounds, vec2 u_position, vec2 u_di
     vec3 direction = normalize(frame_around(spot_axis(r)) * vec3(around, 1.0 - v));
     float falloff = square(t);
     return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction,
-                      spectrum_value(r.color) * (r.intensity * falloff), falloff / spot_solid_angle(f), true, true);
+                      untinted_value(r.color) * (r.intensity * falloff), falloff / spot_solid_angle(f), true, true);
 }
 
 float spot_pdf_emit(SpotLight r, SceneBounds bounds, vec3 direction, LightHit hit) {
@@ -79,7 +79,7 @@ float spot_pdf_emit(SpotLight r, SceneBounds bounds, vec3 direction, LightHit hi
 }
 
 float spot_power(SpotLight r, SceneBounds bounds) {
-    return spot_solid_angle(spot_cone_edges(r)) * r.intensity * luminance(spectrum_value(r.color));
+    return spot_solid_angle(spot_cone_edges(r)) * r.intensity * luminance(untinted_value(r.color));
 }
 
 void spot_bounds(SpotLight r, out vec3 lo, out vec3 hi) { lo = hi = r.placement.world_from_local[3]; }

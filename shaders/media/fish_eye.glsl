@@ -16,23 +16,23 @@ struct FishEye {
 float fish_eye_profile(FishEye r, vec3 d) { return 1.0 / (1.0 + dot(d, d) / (r.radius * r.radius)); }
 
 Spectrum fish_eye_ior(FishEye r, vec3 position) {
-    return spectrum_value(r.ior) * fish_eye_profile(r, position - r.center.position);
+    return untinted_value(r.ior) * fish_eye_profile(r, position - r.center.position);
 }
 
 bool fish_eye_bends(FishEye r) { return true; }
 
 vec3 fish_eye_bending(FishEye r, vec3 position) {
     vec3 d = position - r.center.position;
-    float profile = fish_eye_profile(r, d), n = spectrum_value(r.ior).x * profile;
+    float profile = fish_eye_profile(r, d), n = untinted_value(r.ior).x * profile;
     return (-2.0 * n * n * profile / (r.radius * r.radius)) * d;
 }
 
 StepLimits fish_eye_step_limits(FishEye r) { return StepLimits(r.tolerance, 0.25 * r.radius); }
 
-bool fish_eye_is_clear(FishEye r) { return is_black(spectrum_value(r.absorption)); }
+bool fish_eye_is_clear(FishEye r) { return is_black(untinted_value(r.absorption)); }
 
 Passage fish_eye_pass(FishEye r, MediumRay ray, uint seed) {
-    Spectrum left = exp(-spectrum_value(r.absorption) * ray.distance);
+    Spectrum left = exp(-untinted_value(r.absorption) * ray.distance);
     return Passage(left, brightness(left));
 }
 

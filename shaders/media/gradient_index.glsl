@@ -31,14 +31,14 @@ Spectrum gradient_index_ior(GradientIndex r, vec3 position) {
     float z = dot(d, r.axis.unit);
     vec3 across = d - z * r.axis.unit;
     float squared = gradient_index_profile(r, dot(across, across), z).x;
-    return max(spectrum_value(r.ior) * sqrt(max(squared, 0.0)), Spectrum(LEAST_INDEX));
+    return max(untinted_value(r.ior) * sqrt(max(squared, 0.0)), Spectrum(LEAST_INDEX));
 }
 
 bool gradient_index_bends(GradientIndex r) { return r.radial != vec3(0) || r.axial != vec3(0); }
 
 vec3 gradient_index_bending(GradientIndex r, vec3 position) {
     vec3 d = position - r.center.position;
-    float z = dot(d, r.axis.unit), ior = spectrum_value(r.ior).x;
+    float z = dot(d, r.axis.unit), ior = untinted_value(r.ior).x;
     vec3 across = d - z * r.axis.unit;
     vec3 profile = gradient_index_profile(r, dot(across, across), z);
     return ior * ior * (profile.y * across + profile.z * r.axis.unit);
@@ -50,10 +50,10 @@ StepLimits gradient_index_step_limits(GradientIndex r) {
     return StepLimits(r.tolerance, 0.5 / max(fastest, 1e-30));
 }
 
-bool gradient_index_is_clear(GradientIndex r) { return is_black(spectrum_value(r.absorption)); }
+bool gradient_index_is_clear(GradientIndex r) { return is_black(untinted_value(r.absorption)); }
 
 Passage gradient_index_pass(GradientIndex r, MediumRay ray, uint seed) {
-    Spectrum left = exp(-spectrum_value(r.absorption) * ray.distance);
+    Spectrum left = exp(-untinted_value(r.absorption) * ray.distance);
     return Passage(left, brightness(left));
 }
 

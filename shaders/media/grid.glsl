@@ -19,14 +19,14 @@ struct Grid {
     PhaseRef phase;          //: {"class":"isotropic"}. Phase function, by which it scatters.
 };
 
-Spectrum grid_ior(Grid r, vec3 position) { return spectrum_value(r.ior); }
+Spectrum grid_ior(Grid r, vec3 position) { return untinted_value(r.ior); }
 
 // At density 1.
-Spectrum grid_unit_extinction(Grid r) { return r.density * (spectrum_value(r.absorption) + spectrum_value(r.scattering)); }
+Spectrum grid_unit_extinction(Grid r) { return r.density * (untinted_value(r.absorption) + untinted_value(r.scattering)); }
 
 bool grid_is_clear(Grid r) { return is_black(grid_unit_extinction(r)); }
 
-bool grid_scatters(Grid r) { return !is_black(r.density * spectrum_value(r.scattering)); }
+bool grid_scatters(Grid r) { return !is_black(r.density * untinted_value(r.scattering)); }
 
 // Of an average lane where the bricks' mean densities on the way sum up to `column`, in m. Not below what weights can divide by.
 float grid_mean_passage(Spectrum extinction, float column) { return max(brightness(exp(-extinction * column)), 1e-12); }
@@ -39,7 +39,7 @@ float next_number(inout uint state) {
 }
 
 FreePath grid_free_path(Grid r, MediumRay ray, Spectrum carried, vec2 u, uint seed) {
-    Spectrum extinction = grid_unit_extinction(r), scattering = r.density * spectrum_value(r.scattering);
+    Spectrum extinction = grid_unit_extinction(r), scattering = r.density * untinted_value(r.scattering);
     if (is_black(carried)) carried = Spectrum(1);
     float top = max_component(mix(extinction, Spectrum(0), lessThanEqual(carried, Spectrum(0))));
     FreePath path = FreePath(false, ray.distance, Spectrum(1), 1.0);
@@ -114,7 +114,7 @@ float grid_mean_extinction(Grid r, vec3 position) {
 }
 
 Spectrum grid_scattering(Grid r, vec3 position) {
-    return r.density * density_at(r.file, position) * spectrum_value(r.scattering);
+    return r.density * density_at(r.file, position) * untinted_value(r.scattering);
 }
 
 uint grid_phase(Grid r) { return r.phase.ref; }

@@ -9,9 +9,9 @@ struct Homogeneous {
     PhaseRef phase;          //: {"class":"isotropic"}. Phase function, by which it scatters.
 };
 
-Spectrum homogeneous_ior(Homogeneous r, vec3 position) { return spectrum_value(r.ior); }
+Spectrum homogeneous_ior(Homogeneous r, vec3 position) { return untinted_value(r.ior); }
 
-Spectrum homogeneous_extinction(Homogeneous r) { return spectrum_value(r.absorption) + spectrum_value(r.scattering); }
+Spectrum homogeneous_extinction(Homogeneous r) { return untinted_value(r.absorption) + untinted_value(r.scattering); }
 
 Passage homogeneous_pass(Homogeneous r, MediumRay ray, uint seed) {
     Spectrum left = exp(-homogeneous_extinction(r) * ray.distance);
@@ -20,17 +20,17 @@ Passage homogeneous_pass(Homogeneous r, MediumRay ray, uint seed) {
 
 bool homogeneous_is_clear(Homogeneous r) { return is_black(homogeneous_extinction(r)); }
 
-bool homogeneous_scatters(Homogeneous r) { return !is_black(spectrum_value(r.scattering)); }
+bool homogeneous_scatters(Homogeneous r) { return !is_black(untinted_value(r.scattering)); }
 
 FreePath homogeneous_free_path(Homogeneous r, MediumRay ray, Spectrum carried, vec2 u, uint seed) {
-    return sample_free_path(homogeneous_extinction(r), spectrum_value(r.scattering), ray.distance, carried, u);
+    return sample_free_path(homogeneous_extinction(r), untinted_value(r.scattering), ray.distance, carried, u);
 }
 
 bool homogeneous_is_even(Homogeneous r) { return true; }
 
 float homogeneous_mean_extinction(Homogeneous r, vec3 position) { return brightness(homogeneous_extinction(r)); }
 
-Spectrum homogeneous_scattering(Homogeneous r, vec3 position) { return spectrum_value(r.scattering); }
+Spectrum homogeneous_scattering(Homogeneous r, vec3 position) { return untinted_value(r.scattering); }
 
 uint homogeneous_phase(Homogeneous r) { return r.phase.ref; }
 

@@ -20,9 +20,9 @@ struct Conductor {
 Conductor conductor_resolve(Conductor r, SurfaceContext c) { return r; }
 
 Spectrum conductor_fresnel(Conductor r, SurfaceContext c, float side, float cos_o) {
-    Spectrum reflectance = spectrum_value(r.reflectance);
+    Spectrum reflectance = untinted_value(r.reflectance);
     float inv_ior = 1.0 / (side < 0.0 ? c.ior_below : c.ior_above);
-    Spectrum f = fresnel_conductor(cos_o, spectrum_value(r.eta) * inv_ior, spectrum_value(r.k) * inv_ior);
+    Spectrum f = fresnel_conductor(cos_o, untinted_value(r.eta) * inv_ior, untinted_value(r.k) * inv_ior);
     return mix(f, reflectance, greaterThanEqual(reflectance, Spectrum(0)));
 }
 

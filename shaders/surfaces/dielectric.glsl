@@ -33,11 +33,21 @@ float dielectric_multiscatter_part(Dielectric r, float mu_o, float eta) {
     return r.multiscatter ? ggx_multiscatter_part(ggx_dielectric_loss(mu_o, r.alpha, eta)) : 0.0;
 }
 
-// Density of scattering at facets more than once, with |cos| mu_i, in the mix with `single`.
-float dielectric_multiscatter_mix(Dielectric r, float single, float mu_o, float mu_i, bool reflects, float eta) {
-    float transmitted = ggx_dielectric_multiscatter_transmission(r.alpha, eta);
-    float lobe = ggx_multiscatter_pdf(mu_i, r.alpha) * (reflects ? 1.0 - transmitted : transmitted);
-    return mix(single, lobe, dielectric_multiscatter_part(r, mu_o, eta));
+// Adds scattering at facets more than once: its f |cos wi| in power transport to `value`, 1/sr, its share to the densities of both
+// directions. mu: |cos| of wo and wi.
+void dielectric_multiscatter(Dielectric r, vec2 mu, bool reflects, float eta, inout float value, inout vec2 densities) {
+    vec2 averages = ggx_dielectric_average_losses(r.alpha, eta);
+    vec2 transmitted = ggx_dielectric_multiscatter_transmissions(averages, eta);
+    if (reflects) transmitted = 1.0 - transmitted.xx, averages = averages.xx;
+    vec2 losses;
+    for (uint i = 0u; i < 2u; ++i) {  // a loop, so that the code of the loss stands once
+        float loss = ggx_dielectric_loss(i == 0u ? mu.x : mu.y, r.alpha, reflects || i == 0u ? eta : 1.0 / eta);
+        if (i == 0u) losses.x = loss;
+        else losses.y = loss;
+    }
+    value += transmitted.x * losses.x * losses.y * mu.y / (PI * averages.y);
+    vec2 lobes = vec2(ggx_multiscatter_pdf(mu.y, r.alpha), ggx_multiscatter_pdf(mu.x, r.alpha)) * transmitted;
+    densities = mix(densities, lobes, vec2(ggx_multiscatter_part(losses.x), ggx_multiscatter_part(losses.y)));
 }
 
 SurfacePair dielectric_evaluate(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi) {
@@ -56,13 +66,9 @@ SurfacePair dielectric_evaluate(Dielectric r, SurfaceContext c, vec3 wo, vec3 wi
         back = (1.0 - f) * ggx_refraction_pdf_reverse(wo, wi, h, r.alpha, eta);
     }
     float value = there * ggx_g1(abs(wi.z), r.alpha);
-    if (r.multiscatter) {
-        float eta_back = reflects ? eta : 1.0 / eta;
-        value += ggx_dielectric_multiscatter(wo.z, wi.z, r.alpha, eta);
-        there = dielectric_multiscatter_mix(r, there, wo.z, abs(wi.z), reflects, eta);
-        back = dielectric_multiscatter_mix(r, back, abs(wi.z), wo.z, reflects, eta_back);
-    }
-    return SurfacePair(Spectrum(reflects ? value : value * dielectric_transmission_scale(c, eta)), there, back);
+    vec2 densities = vec2(there, back);
+    if (r.multiscatter) dielectric_multiscatter(r, vec2(wo.z, abs(wi.z)), reflects, eta, value, densities);
+    return SurfacePair(Spectrum(reflects ? value : value * dielectric_transmission_scale(c, eta)), densities.x, densities.y);
 }
 
 BsdfSample dielectric_sample_smooth(SurfaceContext c, vec3 wo, float side, float u) {
@@ -94,7 +100,8 @@ BsdfSample dielectric_sample(Dielectric r, SurfaceContext c, vec3 wo, vec3 u) {
     if (!reflects) refract_direction(wo, h, cos_o, eta, wi);
     if (!single) {
         wi = ggx_sample_multiscatter(u.xy, r.alpha);
-        reflects = choice >= ggx_dielectric_multiscatter_transmission(r.alpha, eta);
+        vec2 averages = ggx_dielectric_average_losses(r.alpha, eta);
+        reflects = choice >= ggx_dielectric_multiscatter_transmissions(averages, eta).x;
         if (!reflects) wi.z = -wi.z;
     }
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();

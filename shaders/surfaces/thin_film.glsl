@@ -23,7 +23,7 @@ ThinFilm thin_film_resolve(ThinFilm r, SurfaceContext c) {
     return r;
 }
 
-bool thin_film_on_metal(ThinFilm r) { return max_component(spectrum_value(r.eta)) >= 0.0; }
+bool thin_film_on_metal(ThinFilm r) { return max_component(untinted_value(r.eta)) >= 0.0; }
 
 bool thin_film_is_delta(ThinFilm r, SurfaceContext c) {
     return thin_film_on_metal(r) ? r.alpha < SMOOTH_ALPHA : interface_is_smooth(r.alpha, c.ior_above, c.ior_below);
@@ -32,9 +32,9 @@ bool thin_film_is_delta(ThinFilm r, SurfaceContext c) {
 // Reflected part at a facet; `near` and `far`: indices of the media on the ray's side and beyond.
 Spectrum thin_film_facet(ThinFilm r, float cos_o, float near, float far) {
     bool metal = thin_film_on_metal(r);
-    Spectrum eta = metal ? spectrum_value(r.eta) : Spectrum(far);
-    Spectrum k = metal ? spectrum_value(r.k) : Spectrum(0);
-    return thin_film_reflectance(max(cos_o, 0.0), near, spectrum_value(r.ior), r.thickness, eta, k);
+    Spectrum eta = metal ? untinted_value(r.eta) : Spectrum(far);
+    Spectrum k = metal ? untinted_value(r.k) : Spectrum(0);
+    return thin_film_reflectance(max(cos_o, 0.0), near, untinted_value(r.ior), r.thickness, eta, k);
 }
 
 // The surface as a ray from above sees it.
