@@ -58,13 +58,10 @@ float principled_coat_passes(PrincipledMaterial m, vec3 w) {
     float average;
     return 1.0 - m.coat * schlick_bound(COAT_F0, 1.0, m.coat_alpha, m.coat_alpha < SMOOTH_ALPHA, mu, average);
 }
-float principled_layers_pass(PrincipledMaterial m, vec3 w) {
-    float passes = principled_coat_passes(m, w);
-    if (m.sheen_most > 0.0) passes *= 1.0 - m.sheen_most * sheen_albedo_bound(w.z, m.sheen_roughness);
-    return passes;
-}
-float principled_layers_pass(PrincipledMaterial m, vec3 wo, vec3 wi) {
-    return min(principled_layers_pass(m, wo), principled_layers_pass(m, wi));
+// What the coat and the sheen let pass; the coat alone: `coat_passes`.
+float principled_layers_pass(PrincipledMaterial m, vec3 w, out float coat_passes) {
+    coat_passes = principled_coat_passes(m, w);
+    return m.sheen_most > 0.0 ? coat_passes * (1.0 - m.sheen_most * sheen_albedo_bound(w.z, m.sheen_roughness)) : coat_passes;
 }
 
 // The coat's f times the cosine that belongs to the direction of light, about its own normal; what the caller multiplies
@@ -146,6 +143,7 @@ struct PrincipledChoice {
     Spectrum reflected, transmitted;  // by the level surface, but what passes straight on:
     Spectrum straight;                // part of the light
     float straight_probability, diffuse_probability, coat_probability, sheen_probability, facet_probability;  // sum 1
+    float passes, coat_passes;  // of principled_layers_pass() for the direction it was made for
 };
 
 PrincipledChoice principled_choice(PrincipledMaterial m, vec3 wo) {
@@ -159,7 +157,7 @@ PrincipledChoice principled_choice(PrincipledMaterial m, vec3 wo) {
         transmitted = Spectrum(0);
     }
     choice.reflected = reflected, choice.transmitted = transmitted;
-    float passes = principled_layers_pass(m, wo);
+    float passes = choice.passes = principled_layers_pass(m, wo, choice.coat_passes);
     choice.straight = Spectrum(1.0 - m.coverage) + passes * choice.straight;
     float average;
     float straight = brightness(choice.straight);
@@ -174,7 +172,7 @@ PrincipledChoice principled_choice(PrincipledMaterial m, vec3 wo) {
     if (!(principled_coat_cosine(m, wo) > 0.0)) coat = 0.0;
 #endif
     if (m.sheen_most > 0.0)
-        sheen = m.coverage * principled_coat_passes(m, wo) * brightness(m.sheen) *
+        sheen = m.coverage * choice.coat_passes * brightness(m.sheen) *
                 max(sheen_albedo_bound(mu_o, m.sheen_roughness), 0.02);
     float scale = 1.0 / (straight + diffuse + coat + sheen + facets);
     choice.straight_probability = straight * scale;
@@ -190,12 +188,13 @@ Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float
     PrincipledChoice choice = principled_choice(m, wo);
     bool reflects = wi.z > 0.0;
     vec3 mirrored = vec3(wi.xy, abs(wi.z));
-    float passes = m.coverage * principled_layers_pass(m, wo, mirrored);
+    float coat_passes, passes_there = principled_layers_pass(m, mirrored, coat_passes);
+    float passes = m.coverage * min(choice.passes, passes_there);
     float diffuse_through = principled_diffuse_through(m);
     Spectrum value = passes * principled_diffuse(m, wo.z, wi.z);
     pdf = choice.diffuse_probability * INV_PI * mirrored.z * (reflects ? 1.0 - diffuse_through : diffuse_through);
     if (m.sheen_most > 0.0 && reflects) {
-        float below_coat = min(principled_coat_passes(m, wo), principled_coat_passes(m, wi));
+        float below_coat = min(choice.coat_passes, coat_passes);
         value += m.coverage * below_coat * sheen_reflection(wo, wi, m.sheen_roughness) * m.sheen;
         pdf += choice.sheen_probability * 0.5 * INV_PI;
     }
@@ -242,7 +241,8 @@ Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoi
     if (facets) {
         float part = principled_reflection_part(choice.reflected, choice.transmitted);
         probability = choice.facet_probability * (reflects ? part : 1.0 - part);
-        value = principled_layers_pass(m, wo, vec3(wi.xy, abs(wi.z))) *
+        float coat_passes;
+        value = min(choice.passes, principled_layers_pass(m, vec3(wi.xy, abs(wi.z)), coat_passes)) *
                 (reflects ? choice.reflected : choice.transmitted * principled_transmission_scale(m));
     }
     if (coat_too && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA) {
