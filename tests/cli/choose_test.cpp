@@ -74,6 +74,16 @@ TEST_CASE("render: a run that ended before its pilot had told chooses when it go
     CHECK(stats["passes"] == 512);
 }
 
+TEST_CASE("render: an error that backward rays reach at once is asked of what is chosen") {
+    const Executable program;
+    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "64x64", "--error", "0.3",
+                                 "--stats", "stats.json"});
+    const auto stats = stats_of(program, run);
+    CHECK(stats["algorithm"] == "bidirectional");
+    CHECK(stats["passes"] > 1);
+    CHECK(stats["estimated_relative_error"] < 0.3);
+}
+
 TEST_CASE("render: a named algorithm runs no pilot and says nothing") {
     const Executable program;
     const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "32x32", "--passes", "4",
