@@ -41,15 +41,15 @@ fail() { # NAME VERDICT LAST_LINE
 
 # step NAME SECONDS COMMAND…: leaves verdict, seconds, output and its last line, of a test that of its first error.
 step() {
-    local name=$1 limit=$2 left=$((total - SECONDS)) start log code line
+    local name=$1 limit=$2 left=$((total - SECONDS)) start taken log code line
     shift 2
     verdict="not run" seconds=null output="" last="the time for all steps was over"
     if [ $left -ge 3 ]; then
         log=$out/logs/${name//[ \/]/_}.txt start=${EPOCHREALTIME/./}
         [ "$limit" -lt $left ] || limit=$left
         timeout -k 5 "$limit" "$@" >"$log" 2>&1 </dev/null
-        code=$?
-        printf -v seconds '%d.%03d' $(((${EPOCHREALTIME/./} - start) / 1000000)) $(((${EPOCHREALTIME/./} - start) / 1000 % 1000))
+        code=$? taken=$(((${EPOCHREALTIME/./} - start) / 1000))
+        printf -v seconds '%d.%03d' $((taken / 1000)) $((taken % 1000))
         output=$(<"$log") last=""
         while read -r line; do [[ -z $line || $last = *" ERROR: "* ]] || last=$line; done <<<"$output"
         case $code in
