@@ -80,6 +80,7 @@ write_result() {
         "$(join "${images[@]}")" "$(join "${rates[@]}")" "$(join "${tests[@]}")" "$(join "${failures[@]}")"
 } >"$out/result.json"
 trap 'fail run interrupted ""; write_result; exit 1' INT TERM
+trap '' PIPE HUP # goes on where nobody watches any more
 
 # The libraries that drivers may need, too, only where the machine has none that will do.
 export LD_LIBRARY_PATH=$here/lib
