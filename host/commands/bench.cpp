@@ -4,13 +4,13 @@
 
 #include "host/bench/measure.h"
 #include "host/bench/report.h"
-#include "host/commands/open_scene.h"
 #include "host/error.h"
+#include "host/gltf/gltf.h"
 #include "host/image/atomic_file.h"
 #include "host/image/exr.h"
 #include "host/image/png.h"
 #include "host/interrupt.h"
-#include "host/gltf/gltf.h"
+#include "host/open_scene.h"
 
 namespace etendue {
 namespace {

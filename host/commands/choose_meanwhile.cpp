@@ -9,8 +9,6 @@ namespace {
 constexpr const char* unsure =
     "backward rays alone may miss light that smooth surfaces concentrate; --algorithm bidirectional does not";
 
-constexpr const char* undecided = "until a pilot tells";
-
 AlgorithmChoice backward(std::string reason) {
     AlgorithmChoice choice;
     choice.reason = std::move(reason);
@@ -18,8 +16,6 @@ AlgorithmChoice backward(std::string reason) {
 }
 
 }  // namespace
-
-bool is_undecided(const AlgorithmChoice& choice) { return choice.reason == undecided; }
 
 ChooseMeanwhile::ChooseMeanwhile(Device& device, Scene& scene, const RenderOptions& options,
                                  const RenderSettings& settings, const Receiver& receiver)
@@ -33,7 +29,8 @@ ChooseMeanwhile::ChooseMeanwhile(Device& device, Scene& scene, const RenderOptio
         note_ = fmt::format("no pilot for so few passes: {}", unsure);
         return;
     }
-    settings_.choice = backward(undecided);
+    settings_.choice = backward("until a pilot tells");
+    settings_.choice->is_open = true;
     pilot_ = std::make_unique<BackgroundPilot>(options, settings, size_t(&receiver - scene.receivers.data()),
                                                receiver);
 }
@@ -44,6 +41,7 @@ std::unique_ptr<Renderer> ChooseMeanwhile::make_renderer() const {
 
 bool ChooseMeanwhile::take() {
     settings_.choice = pilot_->choice();
+    device_.programs->expect(device_, pilot_->programs());
     pilot_.reset();
     const bool anew = settings_.choice->algorithm != Algorithm::backward;
     note_ = fmt::format("{}: {}{}", algorithm_name(settings_.choice->algorithm), settings_.choice->reason,

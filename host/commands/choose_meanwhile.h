@@ -12,9 +12,6 @@
 
 namespace etendue {
 
-// Of a checkpoint written before the pilot had told: the choice is open again.
-bool is_undecided(const AlgorithmChoice& choice);
-
 class ChooseMeanwhile {
   public:
     // Nothing is open where an algorithm was named or the settings hold a choice, where the scene tells

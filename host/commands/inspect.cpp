@@ -1,7 +1,7 @@
 // etendue inspect: what a scene holds, what it makes the shaders compile, and why.
 #include <fmt/core.h>
 
-#include "host/commands/open_scene.h"
+#include "host/open_scene.h"
 #include "host/render/renderer.h"
 
 namespace etendue {

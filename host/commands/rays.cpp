@@ -3,8 +3,8 @@
 
 #include <numeric>
 
-#include "host/commands/open_scene.h"
 #include "host/error.h"
+#include "host/open_scene.h"
 #include "host/render/path_export.h"
 
 namespace etendue {

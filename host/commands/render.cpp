@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "host/commands/choose_meanwhile.h"
-#include "host/commands/open_scene.h"
 #include "host/commands/stats.h"
 #include "host/error.h"
 #include "host/image/atomic_file.h"
@@ -13,6 +12,7 @@
 #include "host/image/exr.h"
 #include "host/image/image.h"
 #include "host/interrupt.h"
+#include "host/open_scene.h"
 #include "host/progress.h"
 #include "host/render/renderer.h"
 
@@ -115,7 +115,7 @@ int render_command(const RenderOptions& given) {
     if (!options.resume.empty()) {
         resumed = read_checkpoint(options.resume, identity);
         const AlgorithmChoice choice = choice_from_json(resumed->counters.at("choice"));
-        if (!is_undecided(choice)) settings.choice = choice;
+        if (!choice.is_open) settings.choice = choice;  // else the pilot had not told when it was written
     }
     ChooseMeanwhile chooses(device, scene, options, settings, receiver);
     std::unique_ptr<Renderer> renderer = chooses.make_renderer();

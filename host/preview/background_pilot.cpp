@@ -3,10 +3,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "host/commands/open_scene.h"
 #include "host/error.h"
-#include "host/render/automatic.h"
 #include "host/gltf/gltf.h"
+#include "host/open_scene.h"
+#include "host/render/automatic.h"
 
 namespace etendue {
 namespace {

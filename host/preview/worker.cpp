@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
-#include "host/commands/open_scene.h"
 #include "host/error.h"
+#include "host/open_scene.h"
 #include "host/preview/receiver_placement.h"
 #include "host/render/automatic.h"
 #include "host/scene/scene_files.h"

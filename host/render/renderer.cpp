@@ -56,7 +56,8 @@ nlohmann::json to_json(const AlgorithmChoice& c) {
     return {{"algorithm", algorithm_name(c.algorithm)},
             {"forward_paths", c.forward_paths},
             {"reason", c.reason},
-            {"pilot_seconds", c.pilot_seconds}};
+            {"pilot_seconds", c.pilot_seconds},
+            {"is_open", c.is_open}};
 }
 
 AlgorithmChoice choice_from_json(const nlohmann::json& json) {
@@ -66,6 +67,7 @@ AlgorithmChoice choice_from_json(const nlohmann::json& json) {
     c.forward_paths = json.at("forward_paths");
     c.reason = json.at("reason");
     c.pilot_seconds = json.at("pilot_seconds");
+    c.is_open = json.value("is_open", false);
     return c;
 }
 

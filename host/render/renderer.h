@@ -30,6 +30,7 @@ struct AlgorithmChoice {
     double forward_paths = 1;  // a pixel and pass
     std::string reason;
     double pilot_seconds = 0;  // that it took to find out
+    bool is_open = false;      // backward rays until a pilot tells
 };
 nlohmann::json to_json(const AlgorithmChoice& choice);
 AlgorithmChoice choice_from_json(const nlohmann::json& json);

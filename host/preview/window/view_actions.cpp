@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "host/commands/open_scene.h"
 #include "host/error.h"
 #include "host/image/exr.h"
 #include "host/image/png.h"
+#include "host/open_scene.h"
 #include "host/preview/pixel_probe.h"
 #include "host/preview/receiver_placement.h"
 #include "host/preview/window/view_state.h"

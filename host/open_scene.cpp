@@ -1,4 +1,4 @@
-#include "host/commands/open_scene.h"
+#include "host/open_scene.h"
 
 #include <algorithm>
 #include <cmath>

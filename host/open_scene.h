@@ -3,7 +3,7 @@
 #pragma once
 #include <memory>
 
-#include "host/commands.h"
+#include "host/options.h"
 #include "host/scene/scene.h"
 
 namespace etendue {
