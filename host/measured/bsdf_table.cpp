@@ -1,4 +1,4 @@
-// Tables of our own: JSON, described in the README ("Measured surfaces").
+// Tables of our own: JSON, described in scenes/FORMAT.md ("Measured surfaces").
 //
 // On the device x = sin² theta takes the place of the angles: there light that falls evenly from everywhere
 // does so evenly, so that interpolated values of f are sampled exactly with the cosine, and what is constant

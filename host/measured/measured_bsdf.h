@@ -43,7 +43,7 @@ struct MeasuredBsdf {
     SpectralValue place;  // of each wavelength among the channels: a spectrum that rises by one a channel
 };
 
-// An RGL file where the name ends in .bsdf, else a table in JSON (README, "Measured surfaces"). What is wrong
+// An RGL file where the name ends in .bsdf, else a table in JSON (scenes/FORMAT.md, "Measured surfaces"). What is wrong
 // in it fails with one line: the file, the place, what is allowed.
 MeasuredBsdf read_measured_bsdf(const std::filesystem::path& path);
 MeasuredBsdf read_rgl_file(const std::filesystem::path& path);

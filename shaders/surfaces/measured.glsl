@@ -1,4 +1,4 @@
-// A surface as it was measured, from a file: a table of reflection and transmission in JSON (README, "Measured surfaces"), or a
+// A surface as it was measured, from a file: a table of reflection and transmission in JSON (scenes/FORMAT.md, "Measured surfaces"), or a
 // file of the RGL material database (.bsdf; Dupuy & Jakob 2018, "An Adaptive Parameterization for Efficient Material
 // Acquisition and Rendering"). Both sides alike.
 //
