@@ -39,7 +39,7 @@ class Rewriter {
         if (blocks_.empty()) return {unchanged, {}};
         TexelShader result;
         for (const auto& [key, view] : views_)
-            result.views.push_back({blocks_.at(key.first), view.binding, key.second});
+            result.views.push_back({blocks_.at(key.first).name, view.binding, key.second});
         for (const SpirvWords& words : in_.instructions) rewrite(words);
         std::vector<SpirvWords> constants;
         for (const auto& [value, id] : made_constants_)
@@ -52,6 +52,10 @@ class Rewriter {
     }
 
   private:
+    struct Block {
+        std::string name;
+        uint32_t type;  // its struct
+    };
     struct View {
         uint32_t variable, binding;
     };
@@ -149,7 +153,7 @@ class Rewriter {
                 root[w[2]] = w[2];
                 const std::string& name = names_.at(type);
                 if (not_texels.count(name.substr(0, name.find("__"))) || !is_readable(type)) used_otherwise.insert(w[2]);
-                blocks_[w[2]] = names_.at(type);
+                blocks_[w[2]] = {name, type};
             } else if (op == spv::OpAccessChain || op == spv::OpInBoundsAccessChain) {
                 if (root.count(w[3])) root[w[2]] = root[w[3]];
             } else if (takes_pointers(op)) {
@@ -167,15 +171,20 @@ class Rewriter {
         Place place;
         if (const auto known = places_.find(chain[3]); known != places_.end())
             place = known->second;
-        else if (blocks_.count(chain[3]))
-            place.variable = chain[3], place.type = types_.at(type_of_variable(chain[3])).operands[1];
+        else if (const auto block = blocks_.find(chain[3]); block != blocks_.end())
+            place.variable = chain[3], place.type = block->second.type;
         else
             return std::nullopt;
         for (size_t i = 4; i < chain.size(); ++i) step(place, chain[i]);
         return place;
     }
 
-    uint32_t type_of_variable(uint32_t variable) const { return variable_types_.at(variable); }
+    // Bytes from one part of an array, matrix or vector to the next.
+    uint32_t stride_of(uint32_t id, uint32_t matrix_stride) const {
+        const spv::Op op = types_.at(id).op;
+        if (op == spv::OpTypeArray || op == spv::OpTypeRuntimeArray) return strides_.at(id);
+        return op == spv::OpTypeMatrix ? matrix_stride : 4;
+    }
 
     void step(Place& place, uint32_t index) const {
         const Type& type = types_.at(place.type);
@@ -187,10 +196,7 @@ class Rewriter {
             place.type = type.operands[member];
             return;
         }
-        const bool is_array = type.op == spv::OpTypeArray || type.op == spv::OpTypeRuntimeArray;
-        const uint32_t stride = is_array                      ? strides_.at(place.type)
-                                : type.op == spv::OpTypeMatrix ? place.matrix_stride
-                                                               : 4;
+        const uint32_t stride = stride_of(place.type, place.matrix_stride);
         const auto known = constants_.find(index);
         if (known != constants_.end())
             place.bytes += stride * known->second;
@@ -209,10 +215,7 @@ class Rewriter {
 
     // A view for each size of texel that the loads from a block want. Blocks that would exceed the limit go without.
     void choose_views() {
-        for (const SpirvWords& w : in_.instructions)
-            if (w[0] == spv::OpVariable && blocks_.count(w[2])) variable_types_[w[2]] = w[1];
         std::map<uint32_t, std::set<uint32_t>> wanted;  // variable -> words
-        std::map<uint32_t, Place> places;
         for (const SpirvWords& w : in_.instructions) {
             if (w[0] == spv::OpAccessChain || w[0] == spv::OpInBoundsAccessChain) {
                 if (auto place = place_of(w)) places_[w[2]] = *place;
@@ -312,9 +315,7 @@ class Rewriter {
             } else {
                 const bool is_array = type.op == spv::OpTypeArray;
                 const uint32_t count = is_array ? r_.constants_.at(type.operands[1]) : type.operands[1];
-                const uint32_t stride = is_array                       ? r_.strides_.at(id)
-                                        : type.op == spv::OpTypeMatrix ? matrix_stride
-                                                                       : 4;
+                const uint32_t stride = r_.stride_of(id, matrix_stride);
                 for (uint32_t i = 0; i < count; ++i)
                     construct.push_back(value(type.operands[0], bytes + i * stride, matrix_stride));
             }
@@ -381,13 +382,13 @@ class Rewriter {
     size_t functions_at_ = 0;  // in out_
     uint32_t bound_, most_views_;
     std::map<uint32_t, Type> types_;
-    std::map<uint32_t, uint32_t> constants_, strides_, bindings_, variable_types_;
+    std::map<uint32_t, uint32_t> constants_, strides_, bindings_;
     std::map<std::pair<uint32_t, uint32_t>, uint32_t> offsets_, matrix_strides_;  // of members
     std::map<uint32_t, std::string> names_;
     std::set<uint32_t> left_alone_;  // structs
     bool has_images_ = false, has_capability_ = false, has_decorations_ = false;
     uint32_t uint_ = 0, uvec4_ = 0, image_ = 0;
-    std::map<uint32_t, std::string> blocks_;  // variable -> name: those that become texel buffers
+    std::map<uint32_t, Block> blocks_;  // by variable: those that become texel buffers
     std::map<uint32_t, Place> places_;        // of pointers into them
     std::map<std::pair<uint32_t, uint32_t>, View> views_;  // by variable and words of a texel
     std::map<uint32_t, uint32_t> made_constants_;

@@ -16,14 +16,20 @@ nlohmann::json stats_of(const Executable& program, const Run& run) {
     return nlohmann::json::parse(read_text(program.folder / "stats.json"));
 }
 
+// Of caustic_box, with statistics.
+Run render(const Executable& program, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"render", caustic_box, "-o", "out.exr", "--stats", "stats.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return program.run(words);
+}
+
 bool says(const Run& run, const std::string& text) { return run.err.find(text) != std::string::npos; }
 
 }  // namespace
 
 TEST_CASE("render: where forward rays win, the passes that were asked for are theirs") {
     const Executable program;
-    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "96x96", "--passes", "256",
-                                 "--stats", "stats.json"});
+    const Run run = render(program, {"--size", "96x96", "--passes", "256"});
     const auto stats = stats_of(program, run);
     CHECK(stats["algorithm"] == "bidirectional");
     CHECK(stats["passes"] == 256);
@@ -35,8 +41,7 @@ TEST_CASE("render: where forward rays win, the passes that were asked for are th
 TEST_CASE(
     "render: a pilot that would cost more than a tenth is left out, and a line says what that may cost") {
     const Executable program;
-    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "32x32", "--passes", "4",
-                                 "--stats", "stats.json"});
+    const Run run = render(program, {"--size", "32x32", "--passes", "4"});
     const auto stats = stats_of(program, run);
     CHECK(stats["algorithm"] == "backward");
     CHECK(stats["passes"] == 4);
@@ -47,8 +52,7 @@ TEST_CASE(
 
 TEST_CASE("render: a pilot that is not done in time is given up") {
     const Executable program;
-    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "64x64", "--time", "0.02",
-                                 "--stats", "stats.json"});
+    const Run run = render(program, {"--size", "64x64", "--time", "0.02"});
     const auto stats = stats_of(program, run);
     CHECK(stats["algorithm"] == "backward");
     CHECK(says(run, "not done in time"));
@@ -76,8 +80,7 @@ TEST_CASE("render: a run that ended before its pilot had told chooses when it go
 
 TEST_CASE("render: an error that backward rays reach at once is asked of what is chosen") {
     const Executable program;
-    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "64x64", "--error", "0.3",
-                                 "--stats", "stats.json"});
+    const Run run = render(program, {"--size", "64x64", "--error", "0.3"});
     const auto stats = stats_of(program, run);
     CHECK(stats["algorithm"] == "bidirectional");
     CHECK(stats["passes"] > 1);
@@ -86,8 +89,7 @@ TEST_CASE("render: an error that backward rays reach at once is asked of what is
 
 TEST_CASE("render: a named algorithm runs no pilot and says nothing") {
     const Executable program;
-    const Run run = program.run({"render", caustic_box, "-o", "out.exr", "--size", "32x32", "--passes", "4",
-                                 "--algorithm", "backward", "--stats", "stats.json"});
+    const Run run = render(program, {"--size", "32x32", "--passes", "4", "--algorithm", "backward"});
     CHECK(stats_of(program, run)["algorithm_reason"] == "asked for");
     CHECK(!says(run, "pilot"));
 }
