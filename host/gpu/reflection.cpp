@@ -154,6 +154,12 @@ std::vector<MemberLayout> struct_members(const Module& m, uint32_t id) {
 
 }  // namespace
 
+uint32_t ShaderLayout::element_bytes(const std::string& buffer) const {
+    for (const BlockLayout& block : blocks)
+        if (block.name == buffer && block.stride > 0) return block.stride;
+    fail_device("a kernel has no array {}", buffer);
+}
+
 ShaderLayout reflect_shader(const Spirv& spirv) {
     const Module m = read_module(spirv);
     ShaderLayout layout;

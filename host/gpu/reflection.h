@@ -33,6 +33,8 @@ struct ShaderLayout {
     std::vector<MemberLayout> push_constants;
     uint32_t push_constant_size = 0;
     std::array<uint32_t, 3> local_size{1, 1, 1};
+    // Of the run-time sized array that the block of this buffer ends with. Fails where there is none.
+    uint32_t element_bytes(const std::string& buffer) const;
 };
 
 ShaderLayout reflect_shader(const Spirv& spirv);

@@ -1,4 +1,4 @@
-// The table by which shaders/lib/light_emission.glsl chooses the light that a forward ray leaves.
+// The table by which shaders/features/light_emission.glsl chooses the light that a forward ray leaves.
 #pragma once
 #include <cstdint>
 #include <span>

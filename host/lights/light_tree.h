@@ -1,4 +1,4 @@
-// The hierarchy over finite lights that shaders/lib/light_selection.glsl descends.
+// The hierarchy over finite lights that shaders/features/light_selection.glsl descends.
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>

@@ -54,14 +54,17 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
       splats_(device, splat_bytes(), "Splats") {
     splats_.fill(0);
     if (techniques.connect || techniques.merge) {
-        const auto make = [&](const std::string& file, const BufferTable& table) {
-            return make_kernel(device, scene, file, table);
-        };
+        const VertexMap::Shaders shaders = {
+            [&](const std::string& file, const BufferTable& table) {
+                return make_kernel(device, scene, file, table);
+            },
+            [&](const std::string& file, const std::string& buffer) {
+                return element_bytes(device, scene, file, "", buffer);
+            }};
         const uint64_t least = scene.features.scattering ? least_vertices_in_media : least_vertices;
         const uint64_t most = std::max(least, uint64_t(count_) * vertices_a_path);
-        const uint64_t bytes = VertexMap::vertex_bytes(scene.features);
-        const uint64_t room = settings.vertex_bytes / (bytes + VertexMap::grid_bytes);
-        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least, most)), bytes, make);
+        const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex(shaders);
+        vertices_.emplace(device, uint32_t(std::clamp<uint64_t>(room, least, most)), shaders);
         path_ends_ = Buffer(device, uint64_t(count_) * 8, "PathEnds");
     }
     BufferTable table = buffers();

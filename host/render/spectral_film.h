@@ -1,5 +1,5 @@
 // The film of a spectral image: the spectrum of every pixel in equal bins over the visible range (first_nm to
-// last_nm), twin of shaders/lib/spectral_film.glsl.
+// last_nm), twin of shaders/features/spectral_film.glsl.
 #pragma once
 #include <cstddef>
 #include <cstdint>

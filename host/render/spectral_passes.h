@@ -1,4 +1,4 @@
-// What kernels know of the wavelengths of the passes they work at (shaders/lib/spectrum.glsl).
+// What kernels know of the wavelengths of the passes they work at (shaders/features/spectrum.glsl).
 #pragma once
 #include <cstdint>
 

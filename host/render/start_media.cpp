@@ -7,9 +7,11 @@ namespace etendue {
 StartMedia::StartMedia(Device& device, Scene& scene, bool of_lights) : device_(device) {
     if (!scene.features.interfaces) return;
     count_ = of_lights ? 1 + 2 * uint32_t(scene.lights) : 1;
-    media_ = Buffer(device, uint64_t(count_) * (scene.features.body_count > 0 ? 12 : 4), "StartMedia");
-    kernel_ = make_color_kernel(device, scene, "kernels/find_start_media.comp", {{"StartMedia", &media_}},
-                                of_lights ? "#define OF_LIGHTS 1\n" : "#define OF_LIGHTS 0\n");
+    const char* file = "kernels/find_start_media.comp";
+    const std::string defines = of_lights ? "#define OF_LIGHTS 1\n" : "#define OF_LIGHTS 0\n";
+    const InColors colors(scene);  // what is asked does not depend on wavelengths
+    media_ = Buffer(device, count_ * element_bytes(device, scene, file, defines, "StartMedia"), "StartMedia");
+    kernel_ = make_kernel(device, scene, file, {{"StartMedia", &media_}}, defines);
 }
 
 void StartMedia::find(uint32_t receiver, float film_aspect) { ask(count_, receiver, film_aspect); }

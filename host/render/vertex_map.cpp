@@ -10,8 +10,8 @@ namespace {
 
 constexpr uint32_t max_capacity = (1u << 28) - 2;
 constexpr uint32_t min_buckets = 16, max_buckets = 1 << 22;
-// Bytes of GridPlace and GridItem (lib/vertex_grid.glsl).
-constexpr uint64_t place_bytes = 12, item_bytes = 24, entry_bytes = 16;
+constexpr const char* sort_file = "kernels/sort_vertices.comp";
+constexpr const char* order_file = "kernels/order_vertices.comp";
 constexpr uint32_t run = 64;            // of buckets: RUN in kernels/scan_buckets.comp
 constexpr uint32_t large_bucket = 512;  // LARGE_BUCKET in lib/vertex_grid.glsl
 
@@ -26,31 +26,37 @@ uint32_t bucket_count(uint32_t capacity) {
 
 }  // namespace
 
-uint64_t VertexMap::vertex_bytes(const Features& features) {
-    return 64 + (features.spectral ? 4 : 0) + (features.body_count > 0 ? 4 : 0);
+uint64_t VertexMap::bytes_a_vertex(const Shaders& shaders) {
+    const uint64_t buckets = 2 * 4;  // at most
+    return shaders.element_bytes(sort_file, "LightVertices") + shaders.element_bytes(sort_file, "GridPlaces") +
+           shaders.element_bytes(sort_file, "GridItems") + shaders.element_bytes(order_file, "GridEntries") +
+           buckets;
 }
 
-VertexMap::VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, const KernelMaker& make)
+VertexMap::VertexMap(Device& device, uint32_t capacity, const Shaders& shaders)
     : capacity_(capacity), buckets_(bucket_count(capacity)), cpu_(device.description.type == "CPU") {
     if (capacity == 0 || capacity > max_capacity)
         fail_input("{} light vertices; allowed: 1 to {}", capacity, max_capacity);
-    vertices_ = Buffer(device, capacity * vertex_bytes, "LightVertices");
+    const auto room = [&](const char* file, const char* buffer) {
+        return Buffer(device, capacity * shaders.element_bytes(file, buffer), buffer);
+    };
+    vertices_ = room(sort_file, "LightVertices");
     counts_ = create_buffer(device, std::vector<LightVertexCounts>{{capacity, buckets_ - 1, 0, 0}},
                             "LightVertexCounts");
-    places_ = Buffer(device, capacity * place_bytes, "GridPlaces");
+    places_ = room(sort_file, "GridPlaces");
     bucket_starts_ = Buffer(device, (buckets_ + 1) * uint64_t(4), "BucketStarts");
     bucket_sums_ = Buffer(device, (buckets_ + run - 1) / run * 4, "BucketSums");
-    items_ = Buffer(device, capacity * item_bytes, "GridItems");
+    items_ = room(sort_file, "GridItems");
     large_buckets_ = Buffer(device, (capacity / large_bucket + 1) * 4, "LargeBuckets");
-    entries_ = Buffer(device, capacity * entry_bytes, "GridEntries");
+    entries_ = room(order_file, "GridEntries");
     BufferTable table = buffers();
     table["BucketSums"] = &bucket_sums_;
     table["GridItems"] = &items_;
     table["LargeBuckets"] = &large_buckets_;
-    scan_buckets_ = make("kernels/scan_buckets.comp", table);
-    sort_vertices_ = make("kernels/sort_vertices.comp", table);
-    order_vertices_ = make("kernels/order_vertices.comp", table);
-    order_large_buckets_ = make("kernels/order_large_buckets.comp", table);
+    scan_buckets_ = shaders.make("kernels/scan_buckets.comp", table);
+    sort_vertices_ = shaders.make(sort_file, table);
+    order_vertices_ = shaders.make(order_file, table);
+    order_large_buckets_ = shaders.make("kernels/order_large_buckets.comp", table);
 }
 
 BufferTable VertexMap::buffers() const {

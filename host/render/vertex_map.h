@@ -5,20 +5,22 @@
 #include <string>
 
 #include "host/gpu/kernel.h"
-#include "host/scene/features.h"
 
 namespace etendue {
 
 class VertexMap {
   public:
-    // Compiles a kernel: its file under shaders/, its buffers.
-    using KernelMaker = std::function<Kernel(const std::string& file, const BufferTable& buffers)>;
+    // How its kernels are compiled: file under shaders/ and buffers; and what an element of a buffer takes in
+    // memory, as a kernel declares it.
+    struct Shaders {
+        std::function<Kernel(const std::string& file, const BufferTable& buffers)> make;
+        std::function<uint64_t(const std::string& file, const std::string& buffer)> element_bytes;
+    };
 
-    static uint64_t vertex_bytes(const Features& features);   // of LightVertex (lib/light_vertices.glsl)
-    static constexpr uint64_t grid_bytes = 12 + 24 + 16 + 8;  // a vertex: place, item, entry, two buckets
+    static uint64_t bytes_a_vertex(const Shaders& shaders);  // with its part of the grid
 
     // Room for `capacity` light vertices, 1 to 2^28 - 2, and a bucket for each, up to 2^22.
-    VertexMap(Device& device, uint32_t capacity, uint64_t vertex_bytes, const KernelMaker& make);
+    VertexMap(Device& device, uint32_t capacity, const Shaders& shaders);
 
     // Of kernels that include lib/light_vertices.glsl or lib/vertex_grid.glsl.
     BufferTable buffers() const;

@@ -11,34 +11,8 @@ constexpr uint32_t bounces_a_submission = 8;
 constexpr uint32_t counts_a_bounce = 3;  // twin of COUNTS_A_BOUNCE in shaders/lib/wavefront.glsl
 constexpr uint32_t all_counts = counts_a_bounce * (bounces_a_submission + 1);
 constexpr uint32_t cpu_paths = 1 << 16, gpu_paths = 1 << 20;
-constexpr uint64_t ray_bytes = 16, hit_bytes = 16;
-
-uint64_t spectrum_bytes(const Scene& scene) { return scene.features.spectral ? 16 : 12; }
-
-// Of struct PathState in shaders/lib/wavefront.glsl.
-uint64_t path_bytes(Wavefront::Direction direction, const Techniques& t, const Scene& scene) {
-    const bool forward = direction == Wavefront::Direction::forward;
-    uint64_t bytes = 24 + spectrum_bytes(scene);   // throughput and what else all have
-    if (!forward) bytes += spectrum_bytes(scene);  // radiance
-    if (t.bidirectional) bytes += 16;              // vcm, vc, pending, flags
-    if (t.bidirectional && forward) bytes += 16;   // light, light_normal
-    const bool forward_only = t.forward && !t.bidirectional && !forward;
-    if (!t.bidirectional && (forward_only || scene.features.dispersion)) bytes += 4;  // flags
-    if (forward) bytes += 8;                                                          // vertices
-    if (t.merge && !forward) bytes += spectrum_bytes(scene);                          // bias
-    if (scene.features.scattering) bytes += 4;                                        // passage
-    if (scene.features.body_count > 0) bytes += 12;                                   // bodies
-    if (scene.features.bending) bytes += 56;                                          // bend
-    return bytes;
-}
-
-// Shaders and this file must agree on the size of what stands in a buffer.
-void check_stride(const Kernel& kernel, const std::string& buffer, uint64_t bytes) {
-    for (const BlockLayout& block : kernel.layout().blocks)
-        if (block.name == buffer && block.stride != bytes)
-            fail_device("{}: {} has {} bytes an element, the host made {}", kernel.name(), buffer,
-                        block.stride, bytes);
-}
+constexpr uint64_t ray_bytes = 16;  // of RayOrigins and RayDirections
+constexpr const char* occlusions_file = "kernels/find_occlusions.comp";
 
 }  // namespace
 
@@ -56,29 +30,27 @@ Wavefront::Wavefront(Device& device, Scene& scene, Direction direction, const Te
     : slots_(slots), items_a_lane_(device.description.type == "CPU" ? 16 : 1) {
     const bool forward = direction == Direction::forward;
     shadow_queues_ = scene.features.light_count == 0 ? 0 : techniques.connect && !forward ? 2 : 1;
-    const uint64_t n = slots, state_bytes = path_bytes(direction, techniques, scene),
-                   shadow_bytes = 36 + spectrum_bytes(scene) + (scene.features.scattering ? 4 : 0) +
-                                  (techniques.beams ? 4 : 0) + (scene.features.body_count > 0 ? 12 : 0);
+    const std::string all = forward ? techniques.forward_defines() : techniques.backward_defines();
+    const char* emit = forward ? "kernels/emit_light_rays.comp" : "kernels/emit_camera_rays.comp";
+    const char* find = "kernels/find_hits.comp";
+    const std::string queued = "#define HAS_RAY_QUEUE 1\n";
+    const uint64_t n = slots;
     ray_origins_ = Buffer(device, n * ray_bytes, "RayOrigins");
     ray_directions_ = Buffer(device, n * ray_bytes, "RayDirections");
-    path_states_ = Buffer(device, n * state_bytes, "PathStates");
-    shadow_rays_ = Buffer(device, n * shadow_bytes * std::max(1u, shadow_queues_), "ShadowRays");
+    path_states_ = Buffer(device, n * element_bytes(device, scene, emit, all, "PathStates"), "PathStates");
     ray_queue_ = Buffer(device, n * 8, "RayQueue");
     queue_counts_ = Buffer(device, all_counts * 4, "QueueCounts");
-    hits_ = Buffer(device, n * hit_bytes, "Hits");
-    hit_instances_ = Buffer(device, scene.features.instances ? n * 4 : 0, "HitInstances");
+    hits_ = Buffer(device, n * element_bytes(device, scene, find, queued, "Hits"), "Hits");
+    if (shadow_queues_ > 0)
+        shadow_rays_ = Buffer(
+            device, n * shadow_queues_ * element_bytes(device, scene, occlusions_file, all, "ShadowRays"),
+            "ShadowRays");
     BufferTable table = this->buffers();
     table.insert(buffers.begin(), buffers.end());
-    const std::string all = forward ? techniques.forward_defines() : techniques.backward_defines();
-    emit_rays_ =
-        make_kernel(device, scene, forward ? "kernels/emit_light_rays.comp" : "kernels/emit_camera_rays.comp",
-                    table, all);
-    check_stride(emit_rays_, "PathStates", state_bytes);
-    find_hits_ = make_kernel(device, scene, "kernels/find_hits.comp", table, "#define HAS_RAY_QUEUE 1\n");
+    emit_rays_ = make_kernel(device, scene, emit, table, all);
+    find_hits_ = make_kernel(device, scene, find, table, queued);
     make_scatter_kernels(device, scene, table, all, by_class);
-    check_stride(scatter_paths_[0], "ShadowRays", shadow_bytes);
-    if (shadow_queues_ > 0)
-        find_occlusions_ = make_kernel(device, scene, "kernels/find_occlusions.comp", table, all);
+    if (shadow_queues_ > 0) find_occlusions_ = make_kernel(device, scene, occlusions_file, table, all);
 }
 
 BufferTable Wavefront::buffers() const {
@@ -88,8 +60,7 @@ BufferTable Wavefront::buffers() const {
             {"ShadowRays", &shadow_rays_},
             {"RayQueue", &ray_queue_},
             {"QueueCounts", &queue_counts_},
-            {"Hits", &hits_},
-            {"HitInstances", &hit_instances_}};
+            {"Hits", &hits_}};
 }
 
 void Wavefront::make_scatter_kernels(Device& device, Scene& scene, BufferTable table,

@@ -40,8 +40,7 @@ class Wavefront {
     uint32_t slots_;
     uint32_t items_a_lane_;   // of a queue
     uint32_t shadow_queues_;  // shadow rays that a path casts at most from an event
-    Buffer ray_origins_, ray_directions_, path_states_, shadow_rays_, ray_queue_, queue_counts_, hits_,
-        hit_instances_;
+    Buffer ray_origins_, ray_directions_, path_states_, shadow_rays_, ray_queue_, queue_counts_, hits_;
     Buffer class_queues_, class_counts_;  // with a kernel for each class
     Kernel emit_rays_, find_hits_, sort_hits_, find_occlusions_;
     std::vector<Kernel> scatter_paths_;  // one, or one for each class of surfaces

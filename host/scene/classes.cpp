@@ -239,19 +239,17 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
                          const std::map<std::string, ClassConstants>& constants) {
     // A kernel for one class of surfaces sets ONLY_SURFACE_CLASS to its tag: the dispatch then has one case.
     // ALL_SURFACE_CLASSES are those of the surfaces that it meets besides.
-    std::string text, all = fmt::format("#define {}(X)", interface.table), rows;
-    const bool split = interface.interface == Interface::surface && !classes.empty();
-    if (split) text += "#ifdef ONLY_SURFACE_CLASS\n";
+    std::string rows, one;
     for (const ClassInfo* info : classes) {
         const std::string row = fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
-        if (split)
-            text += fmt::format("#if ONLY_SURFACE_CLASS == {}\n#define {}(X){}\n#endif\n", info->tag,
-                                interface.table, row);
+        one += fmt::format("#if ONLY_SURFACE_CLASS == {}\n#define {}(X){}\n#endif\n", info->tag,
+                           interface.table, row);
         rows += row;
     }
-    all += rows;
-    text += split ? fmt::format("#define ALL_{}(X){}\n#else\n{}\n#endif\n", interface.table, rows, all) : all;
-    text += '\n';
+    std::string text = fmt::format("#define {}(X){}\n", interface.table, rows);
+    if (interface.interface == Interface::surface)
+        text = fmt::format("#ifdef ONLY_SURFACE_CLASS\n{}#else\n{}#endif\n#define ALL_{}(X){}\n", one, text,
+                           interface.table, rows);
     for (const ClassInfo* info : classes) {
         const auto known = constants.find(info->name);
         if (known != constants.end()) text += known->second.macros;

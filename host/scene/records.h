@@ -18,7 +18,7 @@
 
 namespace etendue {
 
-// Twin of struct SpectrumRef in shaders/lib/spectrum.glsl.
+// Twin of struct SpectrumRef in shaders/features/spectrum.glsl.
 struct SpectrumRef {
     glm::vec3 rgb{0};    // linear Rec.709
     uint32_t table = 0;  // index into Scene::spectra

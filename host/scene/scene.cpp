@@ -39,7 +39,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
 
 Scene SceneCompiler::run() {
     out_.warnings = in_.warnings;
-    add_spectrum({glm::vec3(1), {}}, SpectralKind::radiance);  // white light: lib/spectrum.glsl
+    add_spectrum({glm::vec3(1), {}}, SpectralKind::radiance);  // white light: features/spectrum.glsl
     out_.cache_folder = options_.cache_folder;
     out_.features.independent_samples = options_.samples == SampleSequence::independent;
     out_.sources.folder = options_.shaders;
@@ -221,14 +221,21 @@ Scene compile_scene(Device& device, const SceneDescription& description, const S
     return SceneCompiler(device, description, options, memory).run();
 }
 
-Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
-                   const std::string& defines) {
-    CompileOptions options;
-    options.defines = scene.features.defines() + defines;
-    options.cache_folder = scene.cache_folder;
+namespace {
+
+// What a kernel reads by name: `buffers`, and behind them the scene's own.
+BufferTable with_buffers_of(const Scene& scene, const BufferTable& buffers) {
     BufferTable table = buffers;
     for (const auto& [name, buffer] : scene.buffers) table.emplace(name, &buffer);
     for (const auto& [name, buffer] : scene.shared_buffers) table.emplace(name, buffer.get());
+    return table;
+}
+
+std::shared_ptr<const Program> make_program(Device& device, Scene& scene, const std::string& file,
+                                            const BufferTable& table, const std::string& defines) {
+    CompileOptions options;
+    options.defines = scene.features.defines() + defines;
+    options.cache_folder = scene.cache_folder;
     uint64_t key = hash_text(file, hash_text(options.defines, scene.sources.hash()));
     std::set<std::string> not_texels;
     if (device.description.max_texels > 0) not_texels = beyond_texels(device, table);
@@ -247,18 +254,31 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
     if (not_texels.empty()) report.spirv = program->file();
     if (std::none_of(scene.kernels.begin(), scene.kernels.end(), [&](auto& k) { return k.key == key; }))
         scene.kernels.push_back(report);
-    Kernel kernel(device, std::move(program), table);
+    return program;
+}
+
+}  // namespace
+
+Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
+                   const std::string& defines) {
+    const BufferTable table = with_buffers_of(scene, buffers);
+    Kernel kernel(device, make_program(device, scene, file, table, defines), table);
     for (const auto& block : kernel.layout().blocks)
         scene.reads_color_spectra |= block.name == "ColorSpectra";
     return kernel;
 }
 
+uint64_t element_bytes(Device& device, Scene& scene, const std::string& file, const std::string& defines,
+                       const std::string& buffer) {
+    return make_program(device, scene, file, with_buffers_of(scene, {}), defines)
+        ->layout()
+        .element_bytes(buffer);
+}
+
 Kernel make_color_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
                          const std::string& defines) {
-    const bool spectral = std::exchange(scene.features.spectral, false);
-    Kernel kernel = make_kernel(device, scene, file, buffers, defines);
-    scene.features.spectral = spectral;
-    return kernel;
+    const InColors colors(scene);
+    return make_kernel(device, scene, file, buffers, defines);
 }
 
 }  // namespace etendue

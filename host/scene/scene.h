@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/gpu/kernel.h"
@@ -104,8 +105,25 @@ void move_receiver(Scene& scene, size_t receiver, const glm::dmat4& world_from_l
 Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
                    const std::string& defines = "");
 
-// The same for a kernel that works in colours even where paths carry wavelengths: what it asks does not
-// depend on them.
+// Bytes of an element of a buffer, as a kernel declares it: what stands in memory is declared by the shaders
+// alone. Fails where the kernel has no such buffer.
+uint64_t element_bytes(Device& device, Scene& scene, const std::string& file, const std::string& defines,
+                       const std::string& buffer);
+
+// While it lives, kernels of the scene are compiled for colours even where paths carry wavelengths: for what does
+// not depend on them.
+class InColors {
+  public:
+    explicit InColors(Scene& scene) : scene_(scene), spectral_(std::exchange(scene.features.spectral, false)) {}
+    InColors(const InColors&) = delete;
+    ~InColors() { scene_.features.spectral = spectral_; }
+
+  private:
+    Scene& scene_;
+    bool spectral_;
+};
+
+// make_kernel() in colours.
 Kernel make_color_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
                          const std::string& defines = "");
 

@@ -23,7 +23,7 @@ std::vector<std::byte> area_record(const ClassInfo& info, uint32_t primitive, ui
 
 }  // namespace
 
-// Lights at infinity come first in the list (lib/light_selection.glsl).
+// Lights at infinity come first in the list (features/light_selection.glsl).
 void SceneCompiler::add_lights() {
     std::vector<Added> finite, infinite;
     if (!options_.environment.empty()) {

@@ -30,7 +30,7 @@ glm::dvec3 fit_smooth_spectrum(const glm::dvec3& rgb, const glm::dvec3& start);
 SpectralTable smooth_spectrum(const glm::dvec3& coefficients);
 
 // Coefficients of smooth spectra for all colours with channels in [0, 1], for interpolation by factor_of_rgb
-// of shaders/lib/spectrum.glsl: for each channel that is the greatest a cube, along x and y the ratios of the
+// of shaders/features/spectrum.glsl: for each channel that is the greatest a cube, along x and y the ratios of the
 // next two channels (cyclically) to it, along z its level g: z = sqrt(g / 2) below 1/2, 1 - sqrt((1 - g) / 2)
 // above.
 constexpr uint32_t color_lattice = 24;  // points an axis

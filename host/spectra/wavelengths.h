@@ -9,7 +9,7 @@
 
 namespace etendue {
 
-// Twin of struct Wavelengths in shaders/lib/spectrum.glsl.
+// Twin of struct Wavelengths in shaders/features/spectrum.glsl.
 struct Wavelengths {
     glm::vec4 nm;      // the first is the hero: the only one left behind dispersion
     glm::vec3 rgb[4];  // what one in each contributes to the pixel: density, mean and even_luminance included

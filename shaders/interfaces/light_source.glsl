@@ -21,7 +21,7 @@
 // density over what is left to choose: the solid angle of a point, the area of parallel rays.
 #include "lib/accurate_math.glsl"
 #include "lib/constants.glsl"
-#include "lib/spectrum.glsl"
+#include "features/spectrum.glsl"
 #include "lib/records.glsl"
 #include "lib/warps.glsl"
 #include "lib/frames.glsl"

@@ -16,16 +16,14 @@
 //
 // Rays and positions are in world space. `seed`: for classes that need any number of random numbers; right in the mean over
 // all seeds. Passage.mean, FreePath.passage and the mean extinction serve to weigh ways to make a path against each other
-// (lib/mis.glsl): they are the same for every path, whatever its lanes carry and whatever the seed, and in both directions.
+// (features/mis.glsl): they are the same for every path, whatever its lanes carry and whatever the seed, and in both directions.
 // No medium (NO_RECORD) is vacuum: ior 1, nothing absorbed, nothing scattered.
 #include "lib/constants.glsl"
-#include "lib/spectrum.glsl"
+#include "features/spectrum.glsl"
 #include "lib/records.glsl"
 #include "lib/bent_step.glsl"
 #include "lib/free_path.glsl"
-#if HAS_SCATTERING
 #include "interfaces/phase_function.glsl"
-#endif
 
 #include "generated/medium_classes.glsl"
 
@@ -92,7 +90,6 @@ bool medium_is_even(uint ref) {
     return result;
 }
 
-#if HAS_SCATTERING
 FreePath medium_free_path(uint ref, MediumRay ray, Spectrum carried, vec2 u, uint seed) {
     FreePath result = FreePath(false, ray.distance, Spectrum(1), 1.0);
     switch (record_tag(ref)) {
@@ -132,9 +129,7 @@ uint medium_phase(uint ref) {
     }
     return result;
 }
-#endif
 
-#if HAS_BENDING
 vec3 medium_bending(uint ref, vec3 position) {
     vec3 result = vec3(0);
     switch (record_tag(ref)) {
@@ -154,4 +149,3 @@ StepLimits medium_step_limits(uint ref) {
     }
     return result;
 }
-#endif

@@ -9,7 +9,7 @@
 // are refused by the host.
 #include "lib/constants.glsl"
 #include "lib/records.glsl"
-#include "lib/spectrum.glsl"
+#include "features/spectrum.glsl"
 
 struct ElementRay {
     vec3 origin;          // m, in the element's frame

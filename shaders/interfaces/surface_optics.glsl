@@ -17,33 +17,29 @@
 // wo is the direction where the path comes from, wi where it goes. c.importance tells the transport direction: false
 // carries radiance (backward rays: transmission scales by (ior on the side of wo / ior on the side of wi)², Veach 1997 eq. 5.12), true carries power.
 // Corrections for shading normals are made by the callers (lib/scattering.glsl), once for all classes.
+#include "features/defaults.glsl"
 #include "lib/constants.glsl"
-#include "lib/spectrum.glsl"
+#include "features/spectrum.glsl"
 #include "lib/records.glsl"
 #include "lib/warps.glsl"
 #include "lib/textures.glsl"
 
-#ifndef HAS_NORMAL_MAPS
-#define HAS_NORMAL_MAPS 0
-#endif
 struct SurfaceContext {
     vec2 uv0, uv1;          // texture coordinates
     vec4 color;             // vertex color, linear
     float ior_above;        // real refractive index of the medium on the side of +z
     float ior_below;
     bool importance;
-#if HAS_NORMAL_MAPS
     mat3 mesh_frame;        // tangent, bitangent and normal that no map has bent, in the local frame
-#endif
 };
 
-// By its members, where no map has bent the frame.
-#if HAS_NORMAL_MAPS
-#define unbent_context(uv0, uv1, color, above, below, importance) \
-    SurfaceContext(uv0, uv1, color, above, below, importance, mat3(1))
-#else
-#define unbent_context SurfaceContext
-#endif
+// Where no map has bent the frame.
+SurfaceContext unbent_context(vec2 uv0, vec2 uv1, vec4 color, float ior_above, float ior_below, bool importance) {
+    return SurfaceContext(uv0, uv1, color, ior_above, ior_below, importance, mat3(1));
+}
+
+// A direction about the normal that no map has bent, in the local frame.
+vec3 from_mesh_frame(SurfaceContext c, vec3 v) { return HAS_NORMAL_MAPS == 1 ? c.mesh_frame * v : v; }
 
 const uint EVENT_NONE = 0u;      // absorbed
 const uint EVENT_REFLECT = 1u;
@@ -51,9 +47,6 @@ const uint EVENT_TRANSMIT = 2u;
 const uint EVENT_DELTA = 4u;     // pdf is the probability of the discrete direction, not a density
 const uint EVENT_STRAIGHT = 8u;  // passes on unscattered (the part that `transparency` gives); implies DELTA | TRANSMIT
 
-#ifndef BIDIRECTIONAL
-#define BIDIRECTIONAL 0
-#endif
 struct SurfacePair {
     Spectrum value;     // f * |cos wi|, 1/sr
     float pdf;          // of wi given wo, 1/sr
@@ -75,10 +68,6 @@ BsdfSample no_bsdf_sample() { return BsdfSample(vec3(0, 0, 1), Spectrum(0), 0.0,
 BsdfSample scattered(vec3 wi, uint event) { return BsdfSample(wi, Spectrum(0), 0.0, event); }
 
 #include "generated/surface_classes.glsl"
-
-#ifndef ONLY_SURFACE_CLASS
-#define ALL_SURFACE_CLASSES SURFACE_CLASSES
-#endif
 
 // Of a surface of any class, in a kernel for one class too.
 SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {

@@ -1,8 +1,9 @@
 // Adds the finished samples of each pixel of the tile to the film, in the order of their index. What forward rays have brought
 // to a pixel in this pass counts as part of its sample.
-// Reads: path states, splats. Writes: film, splats, counters. Barrier expected: after the dispatch.
+// Reads: paths, splats. Writes: film, splats, counters. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint first_pixel, tile_pixels, samples; };
+#include "features/bias.glsl"
 #include "lib/wavefront.glsl"
 #include "stages/record_sample.glsl"
 
@@ -12,14 +13,10 @@ void main() {
     if (i < tile_pixels) {
         FilmPixel pixel = film[first_pixel + i];
         for (uint s = 0u; s < samples; ++s) {
-#if SPECTRAL
-            batch_pass = s;
-#endif
-#if MERGE_VERTICES
-            vec3 bias = spectrum_rgb(path_states[s * tile_pixels + i].bias);
-            if (is_finite(bias)) add_bias(pixel, bias);
-#endif
-            record_sample(pixel, first_pixel + i, path_states[s * tile_pixels + i].radiance, counters);
+            begin_pass(s);
+            Path path = path_states[s * tile_pixels + i];
+            record_bias(pixel, path);
+            record_sample(pixel, first_pixel + i, path.radiance, counters);
         }
         film[first_pixel + i] = pixel;
     }

@@ -1,5 +1,5 @@
 // Starts a path in every slot.
-// Reads: receiver. Writes: path state, the ray queue of bounce 0 and its count. Barrier expected: after the dispatch.
+// Reads: receiver. Writes: paths, the ray queue of bounce 0 and its count. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
     uint paths, receiver;

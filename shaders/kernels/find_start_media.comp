@@ -11,7 +11,7 @@
 // Assumed: the receiver lies in one medium, and so does each side of a light (of a mesh: of each triangle). The sides differ
 // only where the light's own surface separates media: then it is believed, not the majority. Lights at infinity are in vacuum.
 //
-// Of bodies with priorities (lib/bodies.glsl) those hold the origin that a ray to infinity leaves more often than it enters them.
+// Of bodies with priorities (features/bodies.glsl) those hold the origin that a ray to infinity leaves more often than it enters them.
 // Reads: scene. Writes: one word a question, or counts and a word. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
@@ -22,19 +22,14 @@ layout(push_constant) uniform Push {
 
 #include "interfaces/light_source.glsl"
 #include "interfaces/receiver.glsl"
-#include "lib/bodies.glsl"
+#include "features/faces.glsl"
 #include "lib/materials.glsl"
 #include "lib/primitives.glsl"
-#include "lib/faces.glsl"
 #include "lib/sampler.glsl"
 #include "lib/traversal.glsl"
 
 layout(scalar, set = 0) readonly buffer Lights { uint lights[]; };
-#if HAS_PRIORITIES
-layout(scalar, set = 0) writeonly buffer StartMedia { Bodies start_media[]; };
-#else
-layout(scalar, set = 0) writeonly buffer StartMedia { uint start_media[]; };
-#endif
+layout(scalar, set = 0) writeonly buffer StartMedia { Surroundings start_media[]; };
 
 const uint RAYS = 64u;
 const int SURE = int(RAYS);      // weight of an answer that no opaque surface hides: more than all others together
@@ -51,11 +46,9 @@ struct Witness {
     uint entered[MOST_ENTERED];  // media, and not left again
     uint depth;                  // how many
     int weight;                  // of the answer; 0 = none
-#if HAS_PRIORITIES
-    Bodies since;                // with priorities, entered since the origin
-    Bodies around;               // … that hold the origin
-    bool knows;                  // around.medium
-#endif
+    Surroundings since;          // bodies entered since the origin
+    Surroundings answer;         // bodies that hold the origin, and the medium around them
+    bool knows;                  // that medium
 };
 
 // Ray k of a question. False: there is none.
@@ -66,16 +59,14 @@ bool begin_witness(uint question, uint k, bool is_first, out Witness w) {
     w.surfaces = w.depth = 0u;
     w.weight = SURE;
     w.turns = false;
-#if HAS_PRIORITIES
-    w.since = w.around = no_bodies();
+    w.since = w.answer = surroundings_of(NO_RECORD);
     w.knows = false;
-#endif
     w.light = NO_RECORD - 1u;  // not that of surfaces that are no lights
     if (question == 0u) {
         w.origin = receiver_emit(receiver, u_position, film_aspect).origin;
         return true;
     }
-#if OF_LIGHTS
+    if (OF_LIGHTS == 0) return false;
     w.light = (question - 1u) / 2u;
     if (w.light < uint(INFINITE_LIGHT_COUNT)) return false;
     EmittedRay ray = light_emit(lights[w.light], scene_bounds(), u_position, u_direction);
@@ -83,12 +74,9 @@ bool begin_witness(uint question, uint k, bool is_first, out Witness w) {
     w.turns = is_first;
     if (is_first) w.direction = ray.normal;
     return ray.pdf > 0.0 && ray.front == ((question & 1u) != 0u);
-#else
-    return false;
-#endif
 }
 
-// The ray has met a surface. True: it knows its answer.
+// The ray has met a surface. True: it knows what medium it started in, bodies aside.
 bool pass_surface(inout Witness w, SurfacePoint p, out uint medium) {
     Material m = materials[p.material];
     bool leaves = dot(w.direction, p.geometric_normal) > 0.0;
@@ -97,9 +85,7 @@ bool pass_surface(inout Witness w, SurfacePoint p, out uint medium) {
     if (++w.surfaces >= MOST_SURFACES || (separates && !leaves && w.depth >= MOST_ENTERED)) w.weight = 0;
     medium = leaves ? m.inside : m.outside;
     if (w.weight == 0) return true;
-#if HAS_PRIORITIES
-    if (w.knows || m.body != NO_RECORD) return false;
-#endif
+    if (w.knows || bounds_by_priority(m)) return false;
     if (!separates) {
         if ((m.flags & MATERIAL_OPAQUE) != 0u) w.weight = 1;
         return false;
@@ -121,31 +107,25 @@ bool pass_surface(inout Witness w, SurfacePoint p, out uint medium) {
     return false;
 }
 
-#if HAS_PRIORITIES
-// Does the same for bodies with priorities, which need the whole ray: true only where it says nothing.
-bool pass_bodies(inout Witness w, Hit hit, SurfacePoint p) {
+// … and through that surface. True: the ray need go no further. Bodies with priorities need the whole ray.
+bool pass_hit(inout Witness w, Hit hit) {
+    SurfacePoint p = locate(hit, w.origin, w.direction);
     Crossing c = meet_faces(w.origin, w.direction, w.since, hit, p);
-    for (uint i = 0u; i < uint(BODY_COUNT); ++i)
-        if (body_count(c.before, i) > body_count(w.since, i)) enter_body(w.around, i);
-    w.since = c.after;
+    count_bodies_left(w.answer, w.since, surroundings_towards(c, p, -w.direction));
+    w.since = surroundings_towards(c, p, w.direction);
     uint medium;
     if (pass_surface(w, p, medium)) {
         w.knows = true;
-        w.around.medium = medium;
+        surround(w.answer, medium);
     }
-    return w.weight == 0;
+    return w.weight == 0 || (w.knows && HAS_PRIORITIES == 0);
 }
-#endif
 
 void main() {
     uint question = first + gl_GlobalInvocationID.x;
     bool done = question >= count;
     uint k = 0u;
-#if HAS_PRIORITIES
-    Bodies best = no_bodies();
-#else
-    uint best = NO_RECORD;
-#endif
+    Surroundings best = surroundings_of(NO_RECORD);
     int lead = 0;
     bool walks = false;
     Witness w;
@@ -157,27 +137,18 @@ void main() {
         }
         if (walks) {
             Hit hit = find_hit(w.origin, w.direction, INFINITY);
-#if !HAS_PRIORITIES
-            uint medium = NO_RECORD;
-#endif
             bool answers = !w.turns;
             if (w.turns) {
                 w.turns = false;
                 w.origin += 0.5 * min(hit.t, SCENE_RADIUS) * w.direction;
                 w.direction = -w.direction;
             } else if (hit.primitive != NO_RECORD) {
-#if HAS_PRIORITIES
-                answers = pass_bodies(w, hit, locate(hit, w.origin, w.direction));
-#else
-                answers = pass_surface(w, locate(hit, w.origin, w.direction), medium);
-#endif
+                answers = pass_hit(w, hit);
             }
             if (answers) {
-#if HAS_PRIORITIES
-                Bodies medium = w.around;
-#endif
-                lead += medium == best ? w.weight : -w.weight;
-                best = lead < 0 ? medium : best;
+                find_medium(w.answer);
+                lead += w.answer == best ? w.weight : -w.weight;
+                if (lead < 0) best = w.answer;
                 lead = abs(lead);
                 walks = false;
                 done = ++k == RAYS || lead >= ENOUGH;

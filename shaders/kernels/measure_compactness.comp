@@ -5,7 +5,7 @@
 // without bound, or within a beam, backward rays meet by chance alone.
 // Reads: lights. Writes: one word a light, compact (1), a point or a narrow beam (2). Barrier expected: after the dispatch.
 #include "interfaces/light_source.glsl"
-#include "lib/light_emission.glsl"
+#include "features/light_emission.glsl"
 #include "lib/sampler.glsl"
 
 layout(local_size_x = 64) in;

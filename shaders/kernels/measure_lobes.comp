@@ -4,7 +4,7 @@
 // Reads: materials. Writes: one word a material. Barrier expected: after the dispatch.
 #include "interfaces/medium_optics.glsl"
 #include "interfaces/surface_optics.glsl"
-#include "lib/bodies.glsl"
+#include "features/bodies.glsl"
 #include "lib/materials.glsl"
 #include "lib/sampler.glsl"
 
@@ -26,11 +26,9 @@ void main() {
         SurfaceContext c = unbent_context(uv, uv, vec4(1), 1.0, 1.0, false);
         if ((m.flags & MATERIAL_SEPARATES_MEDIA) != 0u)
             c.ior_above = medium_ior(m.outside, vec3(0)), c.ior_below = medium_ior(m.inside, vec3(0));
-#if HAS_PRIORITIES
         // A body with a priority has vacuum around it, or any of the others.
-        uint around = k % (uint(BODY_COUNT) + 1u);
-        if (m.body != NO_RECORD && around > 0u) c.ior_above = medium_ior(body_media[around - 1u], vec3(0));
-#endif
+        uint around = k % (BODIES + 1u);
+        if (BODIES > 0u && m.body != NO_RECORD && around > 0u) c.ior_above = medium_ior(body_medium(around - 1u), vec3(0));
         BsdfSample b = surface_sample(m.surface, c, warp_sphere(sample_2d(random)), sample_3d(random));
         bool is_delta = (b.event & EVENT_DELTA) != 0u && (b.event & EVENT_STRAIGHT) == 0u;
         is_narrow = is_narrow || (b.event != EVENT_NONE && !is_black(b.weight) && (is_delta || b.pdf > NARROW_DENSITY));

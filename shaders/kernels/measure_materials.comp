@@ -4,16 +4,12 @@
 #include "interfaces/medium_optics.glsl"
 #include "interfaces/surface_optics.glsl"
 #include "lib/materials.glsl"
-#if HAS_PRIORITIES
 #include "lib/sampler.glsl"
-#endif
 
 layout(local_size_x = 64) in;
 layout(scalar, set = 0) buffer MaterialOpacity { uint material_is_opaque[]; };
 layout(push_constant) uniform Push { uint first, count; };
-#if HAS_PRIORITIES
 const uint SURFACE_SAMPLES = 256u;  // over directions and texture coordinates
-#endif
 
 void main() {
     uint i = first + gl_GlobalInvocationID.x;
@@ -24,9 +20,8 @@ void main() {
     if ((m.flags & MATERIAL_SEPARATES_MEDIA) != 0u && m.body == NO_RECORD)
         c.ior_above = medium_ior(m.outside, vec3(0)), c.ior_below = medium_ior(m.inside, vec3(0));
     uint answer = surface_is_opaque(m.surface, c) ? 1u : 0u;
-#if HAS_PRIORITIES
-    bool passes = m.surface == NO_RECORD;
-    for (uint k = 0u; k < SURFACE_SAMPLES && !passes; ++k) {
+    bool passes = HAS_PRIORITIES == 0 || m.surface == NO_RECORD;
+    for (uint k = 0u; HAS_PRIORITIES == 1 && k < SURFACE_SAMPLES && !passes; ++k) {
         Sampler random = start_sampler(uvec2(0), k, 0u);
         c.uv0 = c.uv1 = sample_2d(random);
         c.ior_below = 1.5;
@@ -34,6 +29,5 @@ void main() {
         passes = (b.event & EVENT_TRANSMIT) != 0u;
     }
     if (!passes) answer |= 2u;
-#endif
     material_is_opaque[i] = answer;
 }

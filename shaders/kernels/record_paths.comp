@@ -57,7 +57,7 @@ void main() {
     uint light = NO_RECORD;
 #endif
     float carried = luminance(path.throughput);
-    path_vertices[i * room] = DeviceVertex(path.origin, RECORDED_EMISSION, NO_RECORD, light, path.medium, NO_RECORD, carried,
+    path_vertices[i * room] = DeviceVertex(path.origin, RECORDED_EMISSION, NO_RECORD, light, path.around.medium, NO_RECORD, carried,
                                            carried, spectrum_rgb(path.throughput), all_lanes(path.throughput));
     path_counts[i] = 1u;
     Counters counters;
@@ -65,25 +65,20 @@ void main() {
     vec3 drawn = path.direction;  // of the line behind the last vertex
     for (uint n = 1u; alive && n < room;) {
         DeviceVertex v;
-        v.medium = path.medium;
+        v.medium = path.around.medium;
         float end = begin_ray(path);
         vec3 origin = path.origin, direction = path.direction;
         recorded_event.happened = recorded_event.followed = false;
-#if HAS_BENDING
         bool bends = is_bent(path);
-#endif
         Hit hit = find_hit(origin, direction, end);
-        ShadowRay shadow;
+        ShadowRay shadow, vertex_shadow;
 #if FORWARD
         alive = scatter_forward_path(path, hit, path_indices[i], counters, shadow);
 #else
-        alive = scatter_path(path, hit, counters, shadow);
+        alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
 #endif
-        bool is_bend = false;
-#if HAS_BENDING
         // Where a bent ray ends a step, having turned so far that a line would no longer do.
-        is_bend = bends && hit.primitive == NO_RECORD && dot(path.direction, drawn) < cos(BEND_ANGLE);
-#endif
+        bool is_bend = bends && hit.primitive == NO_RECORD && dot(path.direction, drawn) < cos(BEND_ANGLE);
         if (alive && !recorded_event.happened && !is_bend) continue;  // past faces that are not there, or along a bent ray
         bool escapes = !recorded_event.happened && !is_bend, ends = recorded_event.happened && !recorded_event.followed;
         v.position = escapes ? origin + SCENE_RADIUS * direction : is_bend ? path.origin : recorded_event.position;

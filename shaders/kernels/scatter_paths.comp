@@ -1,6 +1,6 @@
 // One event of every path in the queue, backward or forward: media crossed, emission collected, shadow rays and a new
 // direction chosen. With SCATTER_CLASS only the paths that sort_hits has dealt to that class (ONLY_SURFACE_CLASS is its tag).
-// Reads: the ray queue of this bounce, hits, path state, scene; backward: forward vertices. Writes: path state, the shadow rays
+// Reads: the ray queue of this bounce, hits, paths, scene; backward: forward vertices. Writes: paths, the shadow rays
 // and the ray queue of the next bounce with their counts, counters; forward: vertices. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
@@ -8,10 +8,11 @@ layout(push_constant) uniform Push {
 #if FORWARD
     uint first_path;
 #else
-    uint slots;  // that there are
-    uint first_pixel, tile_pixels, first_sample, width, height, seed;
+    uint slots;        // that there are
+    uint tile_pixels;  // slots of a pass
 #endif
 };
+#include "features/class_queues.glsl"
 #include "lib/counters.glsl"
 #include "lib/wavefront.glsl"
 #if FORWARD
@@ -20,66 +21,42 @@ layout(push_constant) uniform Push {
 #include "stages/scatter_path.glsl"
 #endif
 
-layout(scalar, set = 0) readonly buffer Hits { vec4 hits[]; };
-#if HAS_INSTANCES
-layout(scalar, set = 0) readonly buffer HitInstances { uint hit_instances[]; };
+// Returns whether the path goes on.
+bool scatter(uint slot, inout Counters counters, inout ShadowRay shadow, inout ShadowRay vertex_shadow) {
+    Path path = path_states[slot];
+#if FORWARD
+    bool alive = scatter_forward_path(path, hits[slot], first_path + slot, counters, shadow);
+    if (!alive) end_forward_path(first_path + slot, path);
+#else
+    begin_pass(slot / tile_pixels);
+    bool alive = scatter_path(path, hits[slot], counters, shadow, vertex_shadow);
+    shadow.target = vertex_shadow.target = slot;
 #endif
+    store_path(slot, path);
+    return alive;
+}
 
 void main() {
-#if FORWARD
-    Batch batch = Batch(first_path);
-#else
-    Batch batch = Batch(first_pixel, tile_pixels, first_sample, width, height, seed);
-#endif
     uint counts = COUNTS_A_BOUNCE * bounce;
-#ifdef SCATTER_CLASS
-    uint count = class_counts[bounce * SCATTER_CLASS_COUNT + SCATTER_CLASS];
-#else
-    uint count = queue_counts[counts];
-#endif
+    uint count = paths_to_scatter(bounce);
     uint stride = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     Counters counters = no_counters();
     // All lanes of a group go round together, so that they can append together.
     for (uint first = gl_WorkGroupID.x * gl_WorkGroupSize.x; first < count; first += stride) {
         uint i = first + gl_LocalInvocationID.x;
         bool alive = false;
-        ShadowRay shadow = no_shadow_ray();
-#if CONNECT_VERTICES && !FORWARD
-        ShadowRay vertex_shadow = no_shadow_ray();
-#endif
+        ShadowRay shadow = no_shadow_ray(), vertex_shadow = no_shadow_ray();
         uint slot = 0u;
         if (i < count) {
-#ifdef SCATTER_CLASS
-            slot = class_queues[read_queue + i];
-#else
-            slot = ray_queue[read_queue + i];
-#endif
-            Path path = load_path(batch, slot);
-            vec4 h = hits[slot];
-            Hit hit = Hit(h.x, h.yz, floatBitsToUint(h.w), NO_RECORD);
-#if HAS_INSTANCES
-            hit.instance = hit_instances[slot];
-#endif
+            slot = path_to_scatter(read_queue + i);
             counters.rays++;
-#if FORWARD
-            alive = scatter_forward_path(path, hit, first_path + slot, counters, shadow);
-            if (!alive) end_forward_path(batch, slot, path);
-#elif CONNECT_VERTICES
-            alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
-#else
-            alive = scatter_path(path, hit, counters, shadow);
-#endif
-            store_path(slot, path);
+            alive = scatter(slot, counters, shadow, vertex_shadow);
         }
         uint place = append(counts + COUNTS_A_BOUNCE, alive);
         if (alive) ray_queue[write_queue + place] = slot;
-#if FORWARD
-        append_shadow_ray(shadow, shadow.pixel, 0u, counts + 1u);
-#else
-        append_shadow_ray(shadow, slot, 0u, counts + 1u);
-#if CONNECT_VERTICES
-        append_shadow_ray(vertex_shadow, slot, slots, counts + 2u);
-#endif
+        append_shadow_ray(shadow, 0u, counts + 1u);
+#if !FORWARD
+        if (SHADOW_RAYS > 1u) append_shadow_ray(vertex_shadow, slots, counts + 2u);
 #endif
     }
     store_counters(counters);

@@ -32,7 +32,7 @@ void main() {
         Path path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), s, seed);
         FirstHit first = find_first(path);
         if (!first.found) continue;
-        ScatteringPoint point = scattering_point(first.p, path.direction, first.medium_above);
+        ScatteringPoint point = scattering_point(first.p, path.direction, first.sides);
         BsdfSample b = surface_sample(point.surface, point.context, point.wo, sample_3d(path.random));
         sum.albedo += spectrum_rgb(b.weight);
         sum.normal += point.frame[2];

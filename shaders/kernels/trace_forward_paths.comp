@@ -2,14 +2,12 @@
 // Reads: scene. Writes: splats, forward vertices, counters. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 
+#include "features/meeting.glsl"
+#include "features/splats.glsl"
+#include "lib/counters.glsl"
 #include "stages/emit_light_ray.glsl"
 #include "stages/scatter_forward_path.glsl"
 #include "stages/trace_shadow.glsl"
-#include "lib/counters.glsl"
-#include "lib/splats.glsl"
-#if CONNECT_VERTICES
-layout(scalar, set = 0) writeonly buffer PathEnds { uvec2 path_ends[]; };  // per path: last stored vertex, their number
-#endif
 
 void main() {
     uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -30,12 +28,10 @@ void main() {
             ShadowRay shadow;
             alive = scatter_forward_path(path, hit, index, counters, shadow);
             Spectrum brought = trace_shadow(shadow, counters);
-            if (!is_black(brought) && !add_splat(shadow.pixel, brought)) counters.non_finite++;
+            if (!is_black(brought) && !add_splat(shadow.target, brought)) counters.non_finite++;
         }
         if (!alive) {
-#if CONNECT_VERTICES
-            path_ends[index] = path.vertices;
-#endif
+            end_forward_path(index, path);
             index += lanes;
         }
     }

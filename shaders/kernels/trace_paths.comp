@@ -14,10 +14,11 @@ layout(push_constant) uniform Push {
     uint seed;
 };
 
+#include "features/bias.glsl"
 #include "stages/emit_camera_ray.glsl"
+#include "stages/record_sample.glsl"
 #include "stages/scatter_path.glsl"
 #include "stages/trace_shadow.glsl"
-#include "stages/record_sample.glsl"
 
 void main() {
     uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -30,32 +31,21 @@ void main() {
     if (pixel < end_pixel) sum = film[pixel];
     while (pixel < end_pixel) {
         if (!alive) {
-#if SPECTRAL
-            batch_pass = sample_index;
-#endif
+            begin_pass(sample_index);
             path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height),
                                    first_sample + sample_index, seed);
         }
         counters.rays++;
         float end = begin_ray(path);
         Hit hit = find_hit(path.origin, path.direction, end);
-        ShadowRay shadow;
-#if CONNECT_VERTICES
-        ShadowRay vertex_shadow;
+        ShadowRay shadow, vertex_shadow;
         alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
-        for (uint i = 0u; i < 2u; ++i) {  // a loop, so that the code stands once
+        for (uint i = 0u; i < SHADOW_RAYS; ++i) {  // a loop, so that the code stands once
             path.radiance += trace_shadow(shadow, counters);
             shadow = vertex_shadow;
         }
-#else
-        alive = scatter_path(path, hit, counters, shadow);
-        path.radiance += trace_shadow(shadow, counters);
-#endif
         if (!alive) {
-#if MERGE_VERTICES
-            vec3 bias = spectrum_rgb(path.bias);
-            if (is_finite(bias)) add_bias(sum, bias);
-#endif
+            record_bias(sum, path);
             record_sample(sum, pixel, path.radiance, counters);
             if (++sample_index == sample_count) {
                 film[pixel] = sum;

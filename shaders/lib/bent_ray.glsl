@@ -7,7 +7,6 @@
 // meets a surface. Its direction there, an interpolation of third order, and the ends of steps are more accurate by far.
 #include "interfaces/medium_optics.glsl"
 
-#if HAS_BENDING
 const uint MOST_TRIALS = 16u;  // of the length of a step; each shortens it to a tenth at most
 
 float across(vec3 v, vec3 direction) { return length(v - dot(v, direction) * direction); }
@@ -27,7 +26,7 @@ BentStep bent_step(uint medium, vec3 position, vec3 direction, float longest) {
     float dt = min(min(limits.longest, longest) / index, sqrt(0.7 * 8.0 * tolerance / max(bending, 1e-30)));
     uint trials = 0u;
     bool tries = true;
-    do {  // no loop that lanes leave one by one (see lib/light_selection.glsl)
+    do {  // no loop that lanes leave one by one (see features/light_selection.glsl)
         if (tries) {
             b = medium_bending(medium, position + dt * (0.5 * s.start + 0.125 * dt * a));
             c = medium_bending(medium, position + dt * (s.start + 0.5 * dt * b));
@@ -46,4 +45,3 @@ BentStep bent_step(uint medium, vec3 position, vec3 direction, float longest) {
 }
 
 vec3 optical_direction(BentStep s, float part) { return mix(s.start, s.end, part) + part * (1.0 - part) * s.bow; }
-#endif

@@ -3,8 +3,7 @@
 // nodes[i] is an entry (uvec4) of the `nodes` buffer. A tree starts with a header of two entries:
 //     lower corner of its grid (float bits), reference of the root | cells per metre, largest extent in m (float bits)
 // then inner nodes, two entries each, one a child: bounds along x, y, z (low half: lower bound, high half: upper
-// bound, in cells of the grid, rounded outward), reference of the child. With HAS_FLOAT_NODES four entries: for
-// each child its lower corner and reference, its upper corner.
+// bound, in cells of the grid, rounded outward), reference of the child.
 // A reference is the entry of an inner node, or a leaf: bit 31, count - 1 in bits 29 and 30, first primitive.
 //
 // primitives[i] is an entry of `primitives`, struct Triangle. Its attributes' upper two bits are the kind:
@@ -34,6 +33,14 @@ const uint KIND_INSTANCE = 2u;
 uint attributes_kind(uint attributes) { return attributes >> 30; }
 uint attributes_index(uint attributes) { return attributes & 0x3FFFFFFFu; }
 
+// Kinds that the scene lacks are known to be absent.
+const bool ONLY_TRIANGLES = HAS_SHAPES == 0 && HAS_INSTANCES == 0;
+bool is_triangle(uint attributes) {
+    return HAS_TRIANGLES == 1 && (ONLY_TRIANGLES || attributes_kind(attributes) == KIND_TRIANGLE);
+}
+bool is_shape(uint attributes) { return HAS_SHAPES == 1 && attributes_kind(attributes) == KIND_SHAPE; }
+bool is_instance(uint attributes) { return HAS_INSTANCES == 1 && attributes_kind(attributes) == KIND_INSTANCE; }
+
 // An affine map and its inverse, each rounded from doubles.
 struct Transform {
     mat4x3 world_from_local;
@@ -58,23 +65,14 @@ BoxRay box_ray(uint header, vec3 origin, vec3 direction) {
     uvec4 first = nodes[header], second = nodes[header + 1u];
     vec3 from_lo = origin - uintBitsToFloat(first.xyz);
     float extent = uintBitsToFloat(second.w);
-#if HAS_FLOAT_NODES
-    vec3 cells = vec3(1.0);
-    vec3 o = origin;
-#else
     vec3 cells = uintBitsToFloat(second.xyz);
     vec3 o = from_lo * cells;
-#endif
     vec3 d = direction * cells;
     d = mix(d, vec3(1e-25), lessThan(abs(d), vec3(1e-25)));  // finite inverse: 0 * infinity never comes up
     BoxRay ray;
     ray.inverse = 1.0 / d;
-#if HAS_FLOAT_NODES
-    ray.start = 0.0;
-#else
     vec3 enter = (mix(vec3(0.0), vec3(65536.0), lessThan(d, vec3(0.0))) - o) * ray.inverse;
     ray.start = clamp(max_component3(enter), 0.0, INFINITY);
-#endif
     vec3 step = ray.start * d;
     float reach = max_component3(abs(from_lo) + abs(ray.start * direction)) + extent;
     vec3 margin = gamma(8.0) * reach * cells;
@@ -85,20 +83,6 @@ BoxRay box_ray(uint header, vec3 origin, vec3 direction) {
     return ray;
 }
 
-#if HAS_FLOAT_NODES
-void meet_boxes(BoxRay ray, uint i, float limit, out vec2 near, out vec2 far, out uvec2 child) {
-    uvec4 l0 = nodes[i], h0 = nodes[i + 1u], l1 = nodes[i + 2u], h1 = nodes[i + 3u];
-    bvec3 down = notEqual(ray.near_shift, uvec3(0u));
-    vec3 n0 = (uintBitsToFloat(mix(l0.xyz, h0.xyz, down)) - ray.near_origin) * ray.inverse;
-    vec3 f0 = (uintBitsToFloat(mix(h0.xyz, l0.xyz, down)) - ray.far_origin) * ray.inverse;
-    vec3 n1 = (uintBitsToFloat(mix(l1.xyz, h1.xyz, down)) - ray.near_origin) * ray.inverse;
-    vec3 f1 = (uintBitsToFloat(mix(h1.xyz, l1.xyz, down)) - ray.far_origin) * ray.inverse;
-    const float widen = 1.0 + 8.0 * EPSILON;
-    near = vec2(max(max(n0.x, n0.y), max(n0.z, 0.0)), max(max(n1.x, n1.y), max(n1.z, 0.0)));
-    far = vec2(min(min_component3(f0) * widen, limit), min(min_component3(f1) * widen, limit));
-    child = uvec2(l0.w, l1.w);
-}
-#else
 // The ends of the ray's way through the two boxes of node `i`, along the ray from `start`; a box is met where
 // near <= far. The last factor widens the way by the rounding of three operations (Ize 2013).
 void meet_boxes(BoxRay ray, uint i, float limit, out vec2 near, out vec2 far, out uvec2 child) {
@@ -113,4 +97,3 @@ void meet_boxes(BoxRay ray, uint i, float limit, out vec2 near, out vec2 far, ou
     far = vec2(min(min_component3(f0) * widen, limit), min(min_component3(f1) * widen, limit));
     child = uvec2(e0.w, e1.w);
 }
-#endif

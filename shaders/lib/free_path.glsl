@@ -1,6 +1,6 @@
 // Free paths: how far light goes through a medium before it scatters.
 #include "lib/constants.glsl"
-#include "lib/spectrum.glsl"
+#include "features/spectrum.glsl"
 
 struct MediumRay {
     vec3 origin, direction;  // in world space; direction is unit

@@ -1,7 +1,8 @@
 // The vertices of light paths, kept for the camera paths of the same pass. A VertexMap of the host owns the buffers.
+#include "features/spectrum.glsl"
+#include "lib/member_if.glsl"
 #include "lib/octahedral.glsl"
-
-#include "lib/spectrum.glsl"
+#include "lib/records.glsl"
 
 struct LightVertex {  // 64 bytes; 4 more with wavelengths, of which there are four, and 4 with bodies that have priorities
     vec3 position;    // m
@@ -14,9 +15,7 @@ struct LightVertex {  // 64 bytes; 4 more with wavelengths, of which there are f
     vec2 uv;
     uint primitive;   // NO_RECORD within a medium
     uint previous;    // light_vertex_link
-#if HAS_PRIORITIES
-    uint medium_above;  // on the side of the normal
-#endif
+    MEMBER_IF(HAS_PRIORITIES, uint medium_above;)  // on the side of the normal (features/bodies.glsl)
 };
 
 const uint NO_LIGHT_VERTEX = 0x0FFFFFFFu;

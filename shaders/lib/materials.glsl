@@ -1,6 +1,6 @@
 // What a surface is made of: how it scatters, what it separates, what it emits.
 #include "lib/records.glsl"
-#include "lib/spectrum.glsl"
+#include "features/spectrum.glsl"
 #include "lib/textures.glsl"
 
 struct Material {
@@ -13,7 +13,7 @@ struct Material {
     TextureRef emission_texture;
     TextureRef normal_texture;    // tangent space, in [0, 1]
     float normal_scale;
-    uint body;                    // place among the materials with a priority (lib/bodies.glsl); NO_RECORD = none
+    uint body;                    // place among the materials with a priority (features/bodies.glsl); NO_RECORD = none
 };
 
 const uint MATERIAL_EMITS_BOTH_SIDES = 1u;

@@ -26,7 +26,7 @@ struct MeasuredSlices {
 uint map_slice(MeasuredMap m, uint index) { return m.first + index * m.height * (m.width + 1u); }
 
 // Loops are kept as loops: unrolled, their code takes a minute to compile. Searches make the same number of steps in all
-// lanes, since values that leave a loop at different times cannot be relied on (lib/light_selection.glsl).
+// lanes, since values that leave a loop at different times cannot be relied on (features/light_selection.glsl).
 
 // Where x stands among numbers that rise, points [first, first + count): as far from one to the next.
 float list_place(uint first, uint count, float x) {

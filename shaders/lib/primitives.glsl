@@ -15,16 +15,7 @@ struct SurfacePoint {
     uint light;             // index into the list of lights, NO_RECORD where it does not emit
 };
 
-#if HAS_VERTEX_ATTRIBUTES
-struct Vertex {
-    vec3 normal;   // unit; zero = take the geometric one
-    uint color;    // four 8-bit fractions, linear
-    vec4 tangent;  // unit, w = ±1; zero = derive it from uv0
-    vec2 uv0, uv1;
-};
-layout(scalar) readonly buffer Vertices { Vertex vertices[]; };
-layout(scalar) readonly buffer TriangleIndices { uvec3 triangle_indices[]; };
-#endif
+#include "features/vertex_attributes.glsl"
 
 vec3 absolute_map(mat4x3 m, vec3 v, float w) {
     return abs(m[0]) * abs(v.x) + abs(m[1]) * abs(v.y) + abs(m[2]) * abs(v.z) + abs(m[3]) * w;
@@ -50,17 +41,6 @@ vec3 map_error(Transform m, vec3 local, vec3 local_error, vec3 world) {
            gamma(5.0) * absolute_map(m.world_from_local, local, 1.0);
 }
 
-#if HAS_VERTEX_ATTRIBUTES
-// Direction of increasing u over the triangle; zero where uv0 does not span it.
-vec3 tangent_from_uv(Triangle r, vec2 uv_0, vec2 uv_1, vec2 uv_2, out float handedness) {
-    vec2 d1 = uv_1 - uv_0, d2 = uv_2 - uv_0;
-    float det = d1.x * d2.y - d1.y * d2.x;
-    // The bitangent runs along decreasing v: image rows count downward.
-    handedness = det < 0.0 ? 1.0 : -1.0;
-    return (d2.y * (r.v1 - r.v0) - d1.y * (r.v2 - r.v0)) * sign(det);
-}
-#endif
-
 // What the ray has hit. `hit.primitive` must not be NO_RECORD.
 SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
     Triangle r = primitives[hit.primitive];
@@ -71,47 +51,24 @@ SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
     LocalPoint p;
     vec3 shading = vec3(0);
     uint transform = NO_RECORD;
-#if HAS_SHAPES
-    Transform m;
-    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+    if (is_shape(r.attributes)) {
         transform = floatBitsToUint(r.v0.y);
-        m = transform_at(transform);
-        p = geometry_locate(floatBitsToUint(r.v0.x), m.local_from_world * vec4(origin, 1.0),
-                            m.local_from_world * vec4(direction, 0.0), GeometryHit(hit.t, hit.uv));
+        mat4x3 m = transform_at(transform).local_from_world;
+        p = geometry_locate(floatBitsToUint(r.v0.x), m * vec4(origin, 1.0), m * vec4(direction, 0.0), GeometryHit(hit.t, hit.uv));
         s.uv0 = s.uv1 = p.uv;
         s.tangent = vec4(p.tangent, 1.0);
     }
-#endif
-#if HAS_TRIANGLES
-    if (attributes_kind(r.attributes) == KIND_TRIANGLE) {
+    if (is_triangle(r.attributes)) {
         p = triangle_locate(r, origin, direction, GeometryHit(hit.t, hit.uv));
         s.uv0 = s.uv1 = vec2(0);
         s.tangent = vec4(p.tangent, 1.0);
-#if HAS_VERTEX_ATTRIBUTES
-        uvec3 indices = triangle_indices[attributes_index(r.attributes)];
-        Vertex a = vertices[indices.x], b = vertices[indices.y], c = vertices[indices.z];
-        vec3 weights = vec3(1.0 - hit.uv.x - hit.uv.y, hit.uv);
-        shading = mat3(a.normal, b.normal, c.normal) * weights;
-        s.uv0 = mat3x2(a.uv0, b.uv0, c.uv0) * weights;
-        s.uv1 = mat3x2(a.uv1, b.uv1, c.uv1) * weights;
-        s.color = mat3x4(unpackUnorm4x8(a.color), unpackUnorm4x8(b.color), unpackUnorm4x8(c.color)) * weights;
-        float handedness;
-        vec3 derived = tangent_from_uv(r, a.uv0, b.uv0, c.uv0, handedness);
-        bool stored = a.tangent.w != 0.0;
-        vec4 tangent = stored ? vec4(mat3(a.tangent.xyz, b.tangent.xyz, c.tangent.xyz) * weights, a.tangent.w)
-                              : vec4(derived, handedness);
-        if (dot(tangent.xyz, tangent.xyz) > 0.0) s.tangent = tangent;
-#endif
-#if HAS_INSTANCES
-        if (hit.instance != NO_RECORD) transform = floatBitsToUint(primitives[hit.instance].v0.y);
-#endif
+        interpolate_attributes(s, r, hit.uv, shading);
+        if (HAS_INSTANCES == 1 && hit.instance != NO_RECORD) transform = floatBitsToUint(primitives[hit.instance].v0.y);
     }
-#endif
     s.position = p.position;
     s.error = p.error;
     s.geometric_normal = p.normal;
-#if HAS_SHAPES || HAS_INSTANCES
-    if (transform != NO_RECORD) {
+    if (!ONLY_TRIANGLES && transform != NO_RECORD) {
         Transform to_world = transform_at(transform);
         s.position = to_world.world_from_local * vec4(p.position, 1.0);
         s.error = map_error(to_world, p.position, p.error, s.position);
@@ -120,7 +77,6 @@ SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
         s.tangent.xyz = mat3(to_world.world_from_local) * s.tangent.xyz;
         s.tangent.w *= transform_determinant(to_world) < 0.0 ? -1.0 : 1.0;
     }
-#endif
     float length2 = dot(shading, shading);
     s.shading_normal = length2 > 0.0 ? shading * inversesqrt(length2) : s.geometric_normal;
     if (dot(s.shading_normal, s.geometric_normal) < 0.0) s.shading_normal = -s.shading_normal;
@@ -153,6 +109,13 @@ vec3 origin_behind(vec3 from, vec3 position, vec3 error, vec3 normal, vec3 direc
     return from + (max(dot(position - from, direction), 0.0) + 16.0 * EPSILON * max(a.x, max(a.y, a.z))) * direction;
 }
 
+// The end of a ray towards a sampled point of a light lies short of the light by the rounding error of both points, so
+// that the light does not hide itself while anything a hair in front of it still does.
+float shadow_t_max(vec3 origin, float distance) {
+    vec3 a = abs(origin);
+    return distance * (1.0 - 8.0 * EPSILON) - 32.0 * EPSILON * (max(a.x, max(a.y, a.z)) + distance);
+}
+
 // Emissive primitives: triangles in world space, or shapes. All pdfs are per world area, 1/m².
 
 // Evenly by area, of a shape by that of its local frame. `error`: bound of the distance from the exact surface, per axis, m.
@@ -160,8 +123,7 @@ GeometrySample primitive_sample(uint primitive, vec2 u, out vec3 error) {
     Triangle r = primitives[primitive];
     GeometrySample s = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
     error = vec3(0);
-#if HAS_SHAPES
-    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+    if (is_shape(r.attributes)) {
         uint ref = floatBitsToUint(r.v0.x);
         Transform m = transform_at(floatBitsToUint(r.v0.y));
         GeometrySample local = geometry_sample(ref, u);
@@ -173,14 +135,11 @@ GeometrySample primitive_sample(uint primitive, vec2 u, out vec3 error) {
         s.normal = normalize(normal_to_world(m, local.normal));
         error = map_error(m, local.position, local_error, s.position);
     }
-#endif
-#if HAS_TRIANGLES
-    if (attributes_kind(r.attributes) == KIND_TRIANGLE) {
+    if (is_triangle(r.attributes)) {
         LocalPoint p = triangle_locate(r, vec3(0), vec3(0), GeometryHit(0.0, warp_triangle(u)));
         s = GeometrySample(p.position, p.normal, 1.0 / triangle_area(r));
         error = p.error;
     }
-#endif
     return s;
 }
 
@@ -188,50 +147,38 @@ GeometrySample primitive_sample(uint primitive, vec2 u, out vec3 error) {
 float primitive_pdf(uint primitive, vec3 normal) {
     Triangle r = primitives[primitive];
     float pdf = 0.0;
-#if HAS_SHAPES
-    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+    if (is_shape(r.attributes)) {
         Transform m = transform_at(floatBitsToUint(r.v0.y));
         pdf = 1.0 / (geometry_area(floatBitsToUint(r.v0.x)) * area_factor(m, normalize(normal_to_local(m, normal))));
     }
-#endif
-#if HAS_TRIANGLES
-    if (attributes_kind(r.attributes) == KIND_TRIANGLE) pdf = 1.0 / triangle_area(r);
-#endif
+    if (is_triangle(r.attributes)) pdf = 1.0 / triangle_area(r);
     return pdf;
 }
 
 GeometrySample primitive_sample_towards(uint primitive, vec3 reference, vec2 u) {
     Triangle r = primitives[primitive];
     GeometrySample s = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
-#if HAS_SHAPES
-    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+    if (is_shape(r.attributes)) {
         Transform m = transform_at(floatBitsToUint(r.v0.y));
         s = geometry_sample_towards(floatBitsToUint(r.v0.x), m.local_from_world * vec4(reference, 1.0), u);
         s.pdf /= area_factor(m, s.normal);
         s.position = m.world_from_local * vec4(s.position, 1.0);
         s.normal = normalize(normal_to_world(m, s.normal));
     }
-#endif
-#if HAS_TRIANGLES
-    if (attributes_kind(r.attributes) == KIND_TRIANGLE) s = triangle_sample_towards(r, reference, u);
-#endif
+    if (is_triangle(r.attributes)) s = triangle_sample_towards(r, reference, u);
     return s;
 }
 
 float primitive_pdf_towards(uint primitive, vec3 reference, vec3 position, vec3 normal) {
     Triangle r = primitives[primitive];
     float pdf = 0.0;
-#if HAS_SHAPES
-    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+    if (is_shape(r.attributes)) {
         Transform m = transform_at(floatBitsToUint(r.v0.y));
         vec3 n = normalize(normal_to_local(m, normal));
         pdf = geometry_pdf_towards(floatBitsToUint(r.v0.x), m.local_from_world * vec4(reference, 1.0),
                                    m.local_from_world * vec4(position, 1.0), n) / area_factor(m, n);
     }
-#endif
-#if HAS_TRIANGLES
-    if (attributes_kind(r.attributes) == KIND_TRIANGLE) pdf = triangle_pdf_towards(r, reference, position, normal);
-#endif
+    if (is_triangle(r.attributes)) pdf = triangle_pdf_towards(r, reference, position, normal);
     return pdf;
 }
 
@@ -239,8 +186,7 @@ float primitive_pdf_towards(uint primitive, vec3 reference, vec3 position, vec3 
 float primitive_area(uint primitive) {
     Triangle r = primitives[primitive];
     float area = 0.0;
-#if HAS_SHAPES
-    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+    if (is_shape(r.attributes)) {
         uint ref = floatBitsToUint(r.v0.x);
         Transform m = transform_at(floatBitsToUint(r.v0.y));
         for (uint i = 0u; i < 64u; i++) {
@@ -249,18 +195,14 @@ float primitive_area(uint primitive) {
         }
         area *= geometry_area(ref) / 64.0;
     }
-#endif
-#if HAS_TRIANGLES
-    if (attributes_kind(r.attributes) == KIND_TRIANGLE) area = triangle_area(r);
-#endif
+    if (is_triangle(r.attributes)) area = triangle_area(r);
     return area;
 }
 
 void primitive_bounds(uint primitive, out vec3 lo, out vec3 hi) {
     Triangle r = primitives[primitive];
     lo = vec3(INFINITY), hi = vec3(-INFINITY);
-#if HAS_SHAPES
-    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+    if (is_shape(r.attributes)) {
         mat4x3 m = transform_at(floatBitsToUint(r.v0.y)).world_from_local;
         vec3 local_lo, local_hi;
         geometry_bounds(floatBitsToUint(r.v0.x), local_lo, local_hi);
@@ -269,18 +211,14 @@ void primitive_bounds(uint primitive, out vec3 lo, out vec3 hi) {
         vec3 reach = absolute_map(m, half_size, 0.0) + gamma(8.0) * absolute_map(m, abs(center) + half_size, 1.0);
         lo = world - reach, hi = world + reach;
     }
-#endif
-#if HAS_TRIANGLES
-    if (attributes_kind(r.attributes) == KIND_TRIANGLE) triangle_bounds(r, lo, hi);
-#endif
+    if (is_triangle(r.attributes)) triangle_bounds(r, lo, hi);
 }
 
 // Texture coordinates of a point on the primitive.
 void primitive_uv(uint primitive, vec3 position, out vec2 uv0, out vec2 uv1) {
     uv0 = vec2(0), uv1 = vec2(0);
     Triangle r = primitives[primitive];
-#if HAS_SHAPES
-    if (attributes_kind(r.attributes) == KIND_SHAPE) {
+    if (is_shape(r.attributes)) {
         // A short ray through the point along each axis; the one that meets the surface nearest to it tells.
         uint ref = floatBitsToUint(r.v0.x);
         vec3 p = transform_at(floatBitsToUint(r.v0.y)).local_from_world * vec4(position, 1.0);
@@ -299,18 +237,5 @@ void primitive_uv(uint primitive, vec3 position, out vec2 uv0, out vec2 uv1) {
         }
         uv1 = uv0;
     }
-#endif
-#if HAS_TRIANGLES && HAS_VERTEX_ATTRIBUTES
-    if (attributes_kind(r.attributes) == KIND_TRIANGLE) {
-        vec3 e1 = r.v1 - r.v0, e2 = r.v2 - r.v0, d = position - r.v0;
-        vec3 n = cross(e1, e2);
-        float inverse = 1.0 / dot(n, n);
-        float b1 = dot(cross(d, e2), n) * inverse, b2 = dot(cross(e1, d), n) * inverse;
-        vec3 weights = vec3(1.0 - b1 - b2, b1, b2);
-        uvec3 indices = triangle_indices[attributes_index(r.attributes)];
-        Vertex a = vertices[indices.x], b = vertices[indices.y], c = vertices[indices.z];
-        uv0 = mat3x2(a.uv0, b.uv0, c.uv0) * weights;
-        uv1 = mat3x2(a.uv1, b.uv1, c.uv1) * weights;
-    }
-#endif
+    if (is_triangle(r.attributes)) triangle_uv(r, position, uv0, uv1);
 }

@@ -6,7 +6,7 @@
 // and the rest is taken as even; thick films so show no fringes (the aim of Belcour & Barla 2017, whose Fourier series
 // of whole channels converges slowly where films are thin or reflect much).
 #include "lib/constants.glsl"
-#include "lib/spectrum.glsl"
+#include "features/spectrum.glsl"
 
 vec2 complex_quotient(vec2 a, vec2 b) {
     return vec2(dot(a, b), a.y * b.x - a.x * b.y) / max(dot(b, b), 1e-30);

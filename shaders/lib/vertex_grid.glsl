@@ -106,7 +106,7 @@ void begin_query(out GridQuery q, vec3 position, float radius) {
     q.next = q.end = q.cells = q.found = q.given = 0u;
     int lower = grid_level(0.95 * radius, max(extent - reach, 0.0));
     int upper = grid_level(1.05 * radius, extent + reach);
-    for (int level = 0; level < 2; ++level)  // no loop that lanes leave one by one (see lib/light_selection.glsl)
+    for (int level = 0; level < 2; ++level)  // no loop that lanes leave one by one (see features/light_selection.glsl)
         if (lower + level <= upper) list_cells(q, lower + level);
 }
 

@@ -48,7 +48,7 @@ FreePath grid_free_path(Grid r, MediumRay ray, Spectrum carried, vec2 u, uint se
     // The digits that thin media need: numbers of the path are multiples of 2^-24.
     float depth = free_depth(u.y + next_number(seed) * (1.0 / 16777216.0)), choice = u.x;
     bool walking = w.t < w.end;
-    do {  // no loop that lanes leave one by one (see lib/light_selection.glsl)
+    do {  // no loop that lanes leave one by one (see features/light_selection.glsl)
         if (walking) {
             float rate = top * w.here.greatest, there = rate * (w.leaves - w.t);
             if (there > depth) {

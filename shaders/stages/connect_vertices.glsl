@@ -14,6 +14,15 @@ struct Connection {
     vec3 wi;        // the direction in the frame of the backward vertex
 };
 
+Connection no_connection(vec3 wi) {
+    Connection c;
+    c.is_there = false, c.wi = wi;
+    return c;
+}
+
+// `here`: scattering at the backward vertex towards the forward one.
+bool connects_to(Connection c, SurfacePair here) { return c.is_there && !is_black(here.value); }
+
 // `random`: of the path.
 Connection choose_vertex(inout Sampler random, SurfacePoint p, ScatteringPoint s) {
     Connection c;
@@ -36,20 +45,14 @@ Connection choose_vertex(inout Sampler random, SurfacePoint p, ScatteringPoint s
 // The forward vertex, as it scatters towards the backward one at s.
 ScatteringPoint forward_point(Connection c, ScatteringPoint s) {
     vec3 light_direction = decode_octahedral(c.y.direction);
+    // A shadow ray goes straight: only boundaries lie on it, index-matched by definition, so what is around here holds there.
+    Surroundings around = surroundings_towards(s, c.direction);
     ScatteringPoint there;
-#if HAS_SCATTERING
-    if (c.y.primitive == NO_RECORD)
-        there = volume_scattering_point(c.y.position, -light_direction, c.y.normal, true);
-    else
-#endif
-    {
+    if (is_in_volume(c.y)) {
+        there = volume_scattering_point(c.y.position, -light_direction, surroundings_of(c.y.normal), true);
+    } else {
         SurfacePoint q = locate(Hit(0.0, c.y.uv, c.y.primitive, c.y.instance), c.y.position, -light_direction);
-        // A shadow ray goes straight: only boundaries lie on it, index-matched by definition, so the index here holds there.
-        uint medium = scattering_medium(s, c.direction);
-#if HAS_PRIORITIES
-        if (materials[q.material].body != NO_RECORD) medium = c.y.medium_above;
-#endif
-        there = shaded_point(q, -light_direction, medium, true);
+        there = shaded_point(q, -light_direction, crossing_of_vertex(c.y, q.material, around), true);
     }
     if (!is_consistent(there, -c.direction)) flatten(there, -light_direction);
     return there;
@@ -69,17 +72,14 @@ ShadowRay connect_vertices(Path path, SurfacePoint p, ScatteringPoint s, VertexM
     bool merges_there = (c.y.previous & LIGHT_VERTEX_MERGES) != 0u &&
                         (is_narrow(s.material) || is_short_edge(c.y.position, p.position));
     float merging_there = merges_there ? merge_density(in_volume(there), c.y.position) : 0.0;
-#if BEAMS
     float merging_apart = 0.0;
-    if (in_volume(there) && merges_along(c.y.normal)) {
+    bool along_there = in_volume(there) && merges_along(c.y.normal);
+    if (along_there) {
         merging_there = 0.0;
-        if (merges_there && is_narrow(s.material)) merging_apart = towards_there * beam_density(there, c.y.position);
+        if (merges_there && is_narrow(s.material)) merging_apart = towards_there * beam_density(there.extinction, c.y.position);
     }
-#endif
     bool merges_here = is_narrow(there.material);
-#if BEAMS
-    if (mis.along && in_volume(there) && merges_along(c.y.normal)) merges_here = is_short_edge(p.position, c.y.position);
-#endif
+    if (mis.along && along_there) merges_here = is_short_edge(p.position, c.y.position);
     float merging_here = merges_here ? mis.merging : 0.0;
     float connects_there = (c.y.previous & VERTEX_STARTS) != 0u ? 1.0 : CONNECTION_SHARE;
     float by_backward = towards_there * (merging_there + connects_there * c.y.vcm + away.pdf_reverse * c.y.vc);
@@ -91,8 +91,6 @@ ShadowRay connect_vertices(Path path, SurfacePoint p, ScatteringPoint s, VertexM
                              meeting_share(path, c.y.previous));
     ShadowRay shadow =
         shadow_ray(p, s, c.direction, c.distance, contribution, (by_backward + by_forward) / CONNECTION_SHARE);
-#if BEAMS
-    shadow.others_apart = merging_apart / CONNECTION_SHARE;
-#endif
+    weigh_apart(shadow, merging_apart / CONNECTION_SHARE);
     return shadow;
 }

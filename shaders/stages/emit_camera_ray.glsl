@@ -1,11 +1,11 @@
 // Starts a backward path: a point of the pixel (box filter), the receiver's ray through it.
+#include "features/bending.glsl"
+#include "features/bias.glsl"
+#include "features/start_media.glsl"
+#include "features/weights.glsl"
 #include "interfaces/receiver.glsl"
-#include "lib/bending.glsl"
-#include "lib/path.glsl"
-#include "lib/start_media.glsl"
-#if BIDIRECTIONAL
 #include "lib/forward_pass.glsl"
-#endif
+#include "lib/path.glsl"
 
 Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, uint seed) {
     Path path;
@@ -18,25 +18,12 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.radiance = Spectrum(0);
     path.reference = ray.origin;
     path.pdf = 0.0;
-    path.medium = receiver_start_medium();
-#if HAS_PRIORITIES
-    path.bodies = receiver_start_bodies();
-#endif
+    path.around = around_receiver();
     path.depth = 0u;
-    start_bending(path);
-#if HAS_SCATTERING
-    path.passage = 1.0;
-#endif
-#if BIDIRECTIONAL
-    path.vcm = float(forward_pass.count) * ray.connect_pdf / (ray.density * float(size.x) * float(size.y));
-    path.vc = 0.0;
-    path.pending = 0.0;
-#endif
-#if HAS_PATH_FLAGS
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
-#endif
-#if MERGE_VERTICES
-    path.bias = Spectrum(0);
-#endif
+    start_bending(path);
+    start_passage(path);
+    start_weights(path, float(forward_pass.count) * ray.connect_pdf / (ray.density * float(size.x) * float(size.y)), 0.0);
+    start_bias(path);
     return path;
 }

@@ -3,18 +3,15 @@
 // Both ask how surfaces of any class scatter, the one at the forward vertex, the other at the backward one for each candidate: in
 // one loop, so that the code of all classes stands once.
 #include "stages/connect_vertices.glsl"
-#if MERGE_VERTICES
 #include "stages/merge_vertices.glsl"
-#endif
 
 // `here`: scattering at the backward vertex towards the forward one.
 ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, Connection c, SurfacePair here,
                         bool merges) {
     ShadowRay shadow = no_shadow_ray();
-    bool connects = c.is_there && !is_black(here.value);
+    bool connects = connects_to(c, here);
     ScatteringPoint there = s;
     if (connects) there = forward_point(c, s);
-#if MERGE_VERTICES
     Merging merging;
     if (merges) begin_merging(merging, p);
     while (connects || merges) {
@@ -35,9 +32,5 @@ ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, Vert
         connects = false;
     }
     if (merges) end_merging(merging, path, p, s);
-#else
-    if (connects)
-        shadow = connect_vertices(path, p, s, mis, c, here, there, scattering_pair(there, -c.direction * there.frame));
-#endif
     return shadow;
 }

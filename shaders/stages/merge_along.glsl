@@ -1,6 +1,6 @@
 // Merges a ray of a backward path with the forward vertices of its medium along it: the beam radiance estimate (Jarosz et al.
 // 2008, "The Beam Radiance Estimate for Volumetric Photon Mapping"; P-B2D of Křivánek et al. 2014, "Unifying Points, Beams, and
-// Paths in Volumetric Light Transport Simulation"), weighted against the other ways to make the paths (lib/mis.glsl).
+// Paths in Volumetric Light Transport Simulation"), weighted against the other ways to make the paths (features/mis.glsl).
 //
 // A vertex counts where the ray passes within the vertex' radius r: its flux spreads evenly over a disk of pi r² across the ray.
 // The ray brings passage times phase function times flux over that; the flux is what scatters, so that no coefficient is wanted.
@@ -16,15 +16,15 @@ const float SURE_DEPTH = 1.0;
 
 // How far along the ray vertices merge, m.
 float merged_length(Path path, float to_surface) {
-    if ((path.flags & PATH_AFTER_NARROW) == 0u || !medium_scatters(path.medium)) return 0.0;
-    if (!merges_along(path.medium)) return 0.0;
+    if ((path.flags & PATH_AFTER_NARROW) == 0u || !medium_scatters(path.around.medium)) return 0.0;
+    if (!merges_along(path.around.medium)) return 0.0;
     float towards = dot(path.origin, path.direction);
     float left = square(towards) + square(BEAM_REACH) - dot(path.origin, path.origin);
     return min(to_surface, sqrt(max(left, 0.0)) - towards);
 }
 
 Passage passage_along(Path path, float distance) {
-    return medium_pass(path.medium, MediumRay(path.origin, path.direction, distance), 0u);
+    return medium_pass(path.around.medium, MediumRay(path.origin, path.direction, distance), 0u);
 }
 
 // `path`: before its ray has crossed the medium; `free_path`: to where it scatters, or `to_surface`.
@@ -32,7 +32,7 @@ Passage passage_along(Path path, float distance) {
 void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
     float length = merged_length(path, to_surface);
     if (!(length > 0.0)) return;
-    float sure = SURE_DEPTH / max(medium_mean_extinction(path.medium, path.origin), 1e-30);
+    float sure = SURE_DEPTH / max(medium_mean_extinction(path.around.medium, path.origin), 1e-30);
     if (free_path < to_surface) length = min(length, free_path + sure);
     // Of the lanes, one of which the free path is sampled for (lib/free_path.glsl).
     Spectrum share = path.throughput / max(dot(path.throughput, Spectrum(1)), 1e-30);
@@ -43,17 +43,17 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
     uint index;
     while (next_on_beam(query, index)) {
         LightVertex y = light_vertices[index];
-        if (y.primitive != NO_RECORD || y.normal != path.medium) continue;
+        if (!is_in_volume(y) || y.normal != path.around.medium) continue;
         vec3 d = y.position - path.origin;
         float t = dot(d, path.direction);
         vec3 aside = d - t * path.direction;
         float radius = merge_radius(y.position);
         Passage passage = passage_along(path, t);
-        ScatteringPoint s = volume_scattering_point(y.position, path.direction, path.medium, false);
+        ScatteringPoint s = volume_scattering_point(y.position, path.direction, path.around, false);
         float value = phase_value(s.phase, dot(decode_octahedral(y.direction), path.direction));
         // As if the ray scattered there.
         Path met = path;
-        met.passage *= max(passage.mean, 1e-30);
+        lessen_passage(met, max(passage.mean, 1e-30));
         VertexMis mis = vertex_mis(met, volume_point(y.position, path.direction), s);
         if (!(mis.merging > 0.0)) continue;
         float others = connects(path) * mis.vcm + value * mis.vc + CONNECTION_SHARE * y.vcm + value * y.vc;

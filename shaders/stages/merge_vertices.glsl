@@ -14,10 +14,7 @@
 
 // Whether forward vertex y lies on the surface of the backward one, or in its medium.
 bool lies_on_same(SurfacePoint p, ScatteringPoint s, LightVertex y, float radius) {
-#if HAS_SCATTERING
-    if (in_volume(s) || y.primitive == NO_RECORD)
-        return in_volume(s) && y.primitive == NO_RECORD && y.normal == s.medium_above;
-#endif
+    if (in_volume(s) || is_in_volume(y)) return in_volume(s) && is_in_volume(y) && y.normal == s.sides.above.medium;
     return dot(decode_octahedral_16(y.normal), s.normal) > 0.7 && abs(dot(y.position - p.position, s.normal)) < 0.5 * radius;
 }
 
@@ -55,12 +52,10 @@ void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s,
 
 void end_merging(Merging m, inout Path path, SurfacePoint p, ScatteringPoint s) {
     Spectrum scale = path.throughput * (forward_pass.path_flux / merge_size(in_volume(s), m.radius));
-#if HAS_SCATTERING
     if (in_volume(s)) {
-        Spectrum scattering = medium_scattering(s.medium_above, p.position);
+        Spectrum scattering = medium_scattering(s.sides.above.medium, p.position);
         scale = mix(scale / scattering, Spectrum(0), lessThanEqual(scattering, Spectrum(0)));
     }
-#endif
     path.radiance += scale * (m.inner + m.outer);
     float inner_share = in_volume(s) ? 2.0 * sqrt(2.0) - 1.0 : 1.0;  // size of the ball or disk over that of the smaller, less one
     path.bias += scale * (m.outer - inner_share * m.inner);

@@ -1,11 +1,9 @@
 // The radiance of a finished backward path becomes the next sample of its pixel, with what forward rays have brought there in
 // the same pass, in the colours of the film and in the bins of a spectral image. What is not finite counts as black.
+#include "features/spectral_film.glsl"
+#include "features/splats.glsl"
 #include "lib/counters.glsl"
 #include "lib/film.glsl"
-#include "lib/spectral_film.glsl"
-#if HAS_SPLATS
-#include "lib/splats.glsl"
-#endif
 
 void record_sample(inout FilmPixel film, uint pixel, Spectrum radiance, inout Counters counters) {
     vec3 rgb = spectrum_rgb(radiance);
@@ -14,13 +12,7 @@ void record_sample(inout FilmPixel film, uint pixel, Spectrum radiance, inout Co
         radiance = Spectrum(0);
         rgb = vec3(0);
     }
-#if HAS_SPLATS
-    Spectrum splats = take_splats(pixel);
-    radiance += splats;
-    rgb += spectrum_rgb(splats);
-#endif
-#if SPECTRAL_BINS > 0
+    add_splats(pixel, radiance, rgb);
     add_to_bins(pixel, radiance);
-#endif
     add_sample(film, rgb);
 }

@@ -81,9 +81,7 @@ Principled principled_resolve(Principled r, SurfaceContext c) {
         if (r.clearcoat_normal_texture.index != NO_RECORD)
             n = 2.0 * texture_value(r.clearcoat_normal_texture, c.uv0, c.uv1).xyz - 1.0;
         n.xy *= r.clearcoat_normal_scale;
-#if HAS_NORMAL_MAPS
-        n = c.mesh_frame * n;
-#endif
+        n = from_mesh_frame(c, n);
         r.clearcoat_normal = n.z > 0.0 ? normalize(n) : vec3(0, 0, 1);
     }
 #endif

@@ -28,7 +28,7 @@ std::vector<glm::vec2> reflectances(const std::vector<FresnelQuery>& queries) {
            out(test_device(), queries.size() * 8, "reflectances");
     const Kernel kernel = make_test_kernel("probe_fresnel", R"(
         #include "lib/constants.glsl"
-        #include "lib/spectrum.glsl"
+        #include "features/spectrum.glsl"
         #include "lib/fresnel.glsl"
         layout(local_size_x = 64) in;
         layout(scalar, set = 0) readonly buffer Queries { vec3 queries[]; };

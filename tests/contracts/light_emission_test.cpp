@@ -20,7 +20,7 @@ struct Choice {
 };
 
 const char* const text = R"(
-    #include "lib/light_emission.glsl"
+    #include "features/light_emission.glsl"
     layout(local_size_x = 64) in;
     struct Choice { uint light; float probability; float stated; };
     layout(scalar, set = 0) readonly buffer Numbers { float numbers[]; };

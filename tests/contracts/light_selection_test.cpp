@@ -65,7 +65,7 @@ struct Choice {
 };
 
 const char* const text = R"(
-    #include "lib/light_selection.glsl"
+    #include "features/light_selection.glsl"
     #include "lib/sampler.glsl"
     layout(local_size_x = 64) in;
     struct Choice { uint light; float probability; float stated; float u; };

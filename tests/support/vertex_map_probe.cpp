@@ -115,10 +115,13 @@ const char* const merge_text = R"(
 }  // namespace
 
 VertexMapProbe::VertexMapProbe(Device& device, uint32_t capacity)
-    : map(device, capacity, VertexMap::vertex_bytes({}),
-          [&](const std::string& file, const BufferTable& buffers) {
-              return Kernel(device, compile_shader(sources(), file), buffers);
-          }),
+    : map(device, capacity,
+          {[&](const std::string& file, const BufferTable& buffers) {
+               return Kernel(device, compile_shader(sources(), file), buffers);
+           },
+           [](const std::string& file, const std::string& buffer) {
+               return reflect_shader(compile_shader(sources(), file).spirv).element_bytes(buffer);
+           }}),
       device_(device) {}
 
 Kernel VertexMapProbe::kernel(const std::string& name, const std::string& text, BufferTable buffers) {

@@ -1,8 +1,7 @@
 // The film of a spectral image: for every pixel SPECTRAL_BINS sums of spectral radiance, W / (m^2 sr nm), over equal shares of
 // the visible range, and what each addition has lost (lib/film.glsl). A pass adds to four of them at most.
-#ifndef SPECTRAL_BINS
-#define SPECTRAL_BINS 0
-#endif
+#include "features/defaults.glsl"
+#include "features/spectrum.glsl"
 
 #if SPECTRAL_BINS > 0
 layout(scalar, set = 0) buffer SpectralFilm { vec2 spectral_film[]; };  // sum, compensation
@@ -19,4 +18,6 @@ void add_to_bins(uint pixel, Spectrum radiance) {
         spectral_film[place] = vec2(total, entry.y + lost);
     }
 }
+#else
+void add_to_bins(uint pixel, Spectrum radiance) {}
 #endif

@@ -16,6 +16,7 @@
 
 layout(scalar, set = 0) readonly buffer Lights { uint lights[]; };  // RecordRefs
 
+const bool HAS_LIGHTS = LIGHT_COUNT > 0;
 const uint FINITE_LIGHT_COUNT = uint(LIGHT_COUNT - INFINITE_LIGHT_COUNT);
 const float INFINITE_LIGHT_PROBABILITY = 
     1.0 / float(max(1, INFINITE_LIGHT_COUNT + (LIGHT_COUNT > INFINITE_LIGHT_COUNT ? 1 : 0)));

@@ -1,9 +1,7 @@
 // A spectral quantity along a ray: a lane for each colour channel, linear Rec.709, or (SPECTRAL) for each of the four
 // wavelengths of the pass. All paths of a pass carry the same wavelengths (host/spectra/wavelengths.h), so what a record's
 // spectrum is worth at them is looked up once a pass, by the host.
-#ifndef SPECTRAL
-#define SPECTRAL 0
-#endif
+#include "features/defaults.glsl"
 
 // A spectral parameter of a record: filled by the host from any spectral value of the scene format.
 struct SpectrumRef {
@@ -19,6 +17,7 @@ float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 #define Spectrum vec4
 const uint LANES = 4u;
 const uint TINTED_SPECTRUM = 0x80000000u;
+const bool HAS_TINTS = HAS_TEXTURES == 1 || HAS_VERTEX_ATTRIBUTES == 1;  // something multiplies parameters by colours
 
 // Twin of struct Wavelengths in host/spectra/wavelengths.h.
 struct Wavelengths {
@@ -31,6 +30,7 @@ layout(scalar, set = 0) readonly buffer SpectrumValues { vec4 spectrum_values[];
 
 // The pass that the invocation is at, in the batch.
 uint batch_pass = 0u;
+void begin_pass(uint pass) { batch_pass = pass; }
 
 // The colour that a radiance has in the image.
 vec3 spectrum_rgb(Spectrum s) {
@@ -99,23 +99,21 @@ Spectrum untinted_value(SpectrumRef ref) {
 
 Spectrum spectrum_value(SpectrumRef ref) {
     Spectrum value = untinted_value(ref);
-#if HAS_TEXTURES || HAS_VERTEX_ATTRIBUTES
-    if ((ref.table & TINTED_SPECTRUM) != 0u) value *= factor_of_rgb(ref.rgb);
-#endif
+    if (HAS_TINTS && (ref.table & TINTED_SPECTRUM) != 0u) value *= factor_of_rgb(ref.rgb);
     return value;
 }
 
 // Multiplies a parameter by a color, as textures do.
 void scale_spectrum(inout SpectrumRef ref, vec3 color) {
-#if HAS_TEXTURES || HAS_VERTEX_ATTRIBUTES
+    if (!HAS_TINTS) return;
     ref.rgb = (ref.table & TINTED_SPECTRUM) != 0u ? ref.rgb * color : color;
     ref.table |= TINTED_SPECTRUM;
-#endif
 }
 
 #else
 
 #define Spectrum vec3
+void begin_pass(uint pass) {}
 const uint LANES = 3u;
 vec3 spectrum_rgb(Spectrum s) { return s; }
 float brightness(Spectrum s) { return luminance(s); }

@@ -1,13 +1,18 @@
 // Paths through media that bend rays, a step of which is one ray of the path.
 //
 // No straight ray connects what lies behind a bend: for light sampling, connections and their weights it is a smooth surface
-// that light has passed (lib/mis.glsl), and shadow rays end where they meet such a medium.
-#include "lib/bent_ray.glsl"
+// that light has passed (features/mis.glsl), and shadow rays end where they meet such a medium.
+#include "features/dispersion.glsl"
+#include "features/weights.glsl"
 #include "lib/path.glsl"
 #include "lib/primitives.glsl"
 
 #if HAS_BENDING
+#include "lib/bent_ray.glsl"
+
+void start_bending(inout Path path) { path.bend = Bend(INFINITY, BentStep(vec3(0), vec3(0), vec3(0), vec3(0)), 0u); }
 bool is_bent(Path path) { return path.bend.chord < INFINITY; }
+bool bends_rays(uint medium) { return medium_bends(medium); }
 
 float greatest_coordinate(vec3 p) { return max(abs(p.x), max(abs(p.y), abs(p.z))); }
 
@@ -15,61 +20,39 @@ float greatest_coordinate(vec3 p) { return max(abs(p.x), max(abs(p.y), abs(p.z))
 void forget_event(inout Path path) {
     path.pdf = 0.0;
     path.reference = path.origin;
-#if HAS_SCATTERING
-    path.passage = 1.0;
-#endif
-#if BIDIRECTIONAL
-    // As update_mis() does where light is refracted.
-    path.vc += path.pending;
-    path.pending = path.vcm = 0.0;
-    path.flags |= PATH_AFTER_NARROW;
-#endif
-#if HAS_PATH_FLAGS
+    start_passage(path);
+    forget_weights(path);
     path.flags &= ~(PATH_STARTS | PATH_PARALLEL);
-#endif
-}
-#endif
-
-void start_bending(inout Path path) {
-#if HAS_BENDING
-    path.bend.chord = INFINITY;
-    path.bend.steps = 0u;
-#endif
 }
 
 // Readies the path for its next ray and returns where that ends at the latest.
 float begin_ray(inout Path path) {
-#if HAS_BENDING
     float longest = path.bend.chord;
     path.bend.chord = INFINITY;
-    if (medium_bends(path.medium)) {
+    uint medium = path.around.medium;
+    if (medium_bends(medium)) {
         forget_event(path);
-#if HAS_DISPERSION
-        Spectrum ior = medium_spectral_ior(path.medium, path.origin);
-        if (ior != Spectrum(ior.x)) make_monochrome(path);
-#endif
+        part_where_index_does(path, medium);
         // Beyond all geometry rays go straight on: a medium that is not closed has no end.
         if (!(dot(path.origin, path.origin) > SCENE_RADIUS * SCENE_RADIUS && dot(path.origin, path.direction) > 0.0)) {
-            path.bend.step = bent_step(path.medium, path.origin, path.direction, longest);
+            path.bend.step = bent_step(medium, path.origin, path.direction, longest);
             path.bend.chord = length(path.bend.step.chord);
             path.direction = path.bend.step.chord / path.bend.chord;
         }
     }
     // A little overlap, so that nothing falls between two steps.
     if (is_bent(path)) return path.bend.chord + 16.0 * EPSILON * (greatest_coordinate(path.origin) + path.bend.chord);
-#endif
     return INFINITY;
 }
 
-#if HAS_BENDING
 // At `position`, on the chord or at its end: the path's direction is that of the bent ray there. Radiance changes with the
 // squared index on the way (Veach 1997, section 5.2).
 void turn(inout Path path, vec3 direction, vec3 position) {
     path.direction = direction;
-#if !FORWARD
-    float index = medium_ior(path.medium, position);
-    path.throughput *= dot(path.bend.step.start, path.bend.step.start) / (index * index);
-#endif
+    if (FORWARD == 0) {
+        float index = medium_ior(path.around.medium, position);
+        path.throughput *= dot(path.bend.step.start, path.bend.step.start) / (index * index);
+    }
     path.bend.chord = INFINITY;
 }
 
@@ -80,10 +63,12 @@ bool count_step(inout Path path, inout Counters counters) {
     return false;
 }
 
-// The chord has met nothing.
-void end_step(inout Path path) {
-    path.origin += path.bend.chord * path.direction;
+// The chord has met nothing. How far the ray has come, m.
+float end_step(inout Path path) {
+    float chord = path.bend.chord;
+    path.origin += chord * path.direction;
     turn(path, normalize(path.bend.step.end), path.origin);
+    return chord;
 }
 
 // The chord has met a surface at p. False: the bent ray, which leaves the chord by some tolerance, does not meet it there, since
@@ -102,4 +87,13 @@ bool end_step_at(inout Path path, SurfacePoint p, float distance) {
     turn(path, direction, p.position);
     return true;
 }
+
+#else
+void start_bending(inout Path path) {}
+bool is_bent(Path path) { return false; }
+bool bends_rays(uint medium) { return false; }
+float begin_ray(inout Path path) { return INFINITY; }
+bool count_step(inout Path path, inout Counters counters) { return true; }
+float end_step(inout Path path) { return 0.0; }
+bool end_step_at(inout Path path, SurfacePoint p, float distance) { return true; }
 #endif

@@ -1,0 +1,88 @@
+// What a scene has and what a kernel traces is said by the host before the kernel's source (host/scene/features.h,
+// host/render/techniques.h). What it does not say is off. What kernels trace:
+//   FORWARD           paths start at a light and carry flux instead of radiance
+//   BIDIRECTIONAL     estimators from both ends are combined (features/mis.glsl)
+//   CONNECT_VERTICES  … also by connecting vertices of backward paths with vertices of forward paths
+//   MERGE_VERTICES    … also by merging them
+//   BEAMS             … in media that are the same everywhere along rays
+//   FORWARD_ONLY      what forward rays can bring is brought by nothing else
+//   HAS_SPLATS        forward rays bring light to pixels
+#ifndef FORWARD
+#define FORWARD 0
+#endif
+#ifndef BIDIRECTIONAL
+#define BIDIRECTIONAL 0
+#endif
+#ifndef CONNECT_VERTICES
+#define CONNECT_VERTICES 0
+#endif
+#ifndef MERGE_VERTICES
+#define MERGE_VERTICES 0
+#endif
+#ifndef BEAMS
+#define BEAMS 0
+#endif
+#ifndef FORWARD_ONLY
+#define FORWARD_ONLY 0
+#endif
+#ifndef HAS_SPLATS
+#define HAS_SPLATS 0
+#endif
+
+// What scenes have, for kernels that are compiled without one:
+#ifndef HAS_TRIANGLES
+#define HAS_TRIANGLES 0
+#endif
+#ifndef HAS_SHAPES
+#define HAS_SHAPES 0
+#endif
+#ifndef HAS_INSTANCES
+#define HAS_INSTANCES 0
+#endif
+#ifndef HAS_VERTEX_ATTRIBUTES
+#define HAS_VERTEX_ATTRIBUTES 0
+#endif
+#ifndef HAS_NORMAL_MAPS
+#define HAS_NORMAL_MAPS 0
+#endif
+#ifndef HAS_TEXTURES
+#define HAS_TEXTURES 0
+#endif
+#ifndef HAS_MEDIA
+#define HAS_MEDIA 0
+#endif
+#ifndef HAS_SCATTERING
+#define HAS_SCATTERING 0
+#endif
+#ifndef HAS_BENDING
+#define HAS_BENDING 0
+#endif
+#ifndef HAS_INTERFACES
+#define HAS_INTERFACES 0
+#endif
+#ifndef HAS_PRIORITIES
+#define HAS_PRIORITIES 0
+#endif
+#ifndef HAS_STRAIGHT
+#define HAS_STRAIGHT 0
+#endif
+#ifndef HAS_DISPERSION
+#define HAS_DISPERSION 0
+#endif
+#ifndef HAS_UNROLLED_TRAVERSAL
+#define HAS_UNROLLED_TRAVERSAL 0
+#endif
+#ifndef INDEPENDENT_SAMPLES
+#define INDEPENDENT_SAMPLES 0
+#endif
+#ifndef SPECTRAL
+#define SPECTRAL 0
+#endif
+#ifndef SPECTRAL_BINS
+#define SPECTRAL_BINS 0
+#endif
+
+// Of kernels/find_hits.comp: any hit will do.
+#ifndef ANY_HIT
+#define ANY_HIT 0
+#endif

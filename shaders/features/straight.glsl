@@ -1,0 +1,68 @@
+// Surfaces that let light pass straight on: alpha, index-matched boundaries, thin glass. Shadow rays go through.
+#include "features/bending.glsl"
+#include "features/weights.glsl"
+#include "lib/path.glsl"
+#include "lib/scattering.glsl"
+#include "lib/traversal.glsl"
+
+// A number for the ray that no other has, for media that need random numbers.
+uint shadow_seed(ShadowRay shadow) {
+    uvec3 where = hash_3d(floatBitsToUint(shadow.origin)), how = floatBitsToUint(shadow.direction);
+    return hash_3d(hash_3d(where ^ how) ^ floatBitsToUint(vec3(shadow.contribution[0], shadow.contribution[1], shadow.t_max))).x;
+}
+
+// Through the medium that the ray is in.
+void pass_medium(inout ShadowRay shadow, float distance) {
+    if (HAS_MEDIA == 0 || shadow.around.medium == NO_RECORD) return;
+    MediumRay ray = MediumRay(shadow.origin, shadow.direction, distance);
+    Passage passage = medium_pass(shadow.around.medium, ray, shadow_seed(shadow));
+    shadow.contribution *= passage.transmittance;
+    lessen_others(shadow, passage.mean);
+}
+
+// Whether all of a shadow ray's way is one search for a hit, any hit.
+const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0;
+
+#if HAS_STRAIGHT
+// Where a ray goes on behind a surface.
+vec3 origin_of_next(Path path, SurfacePoint p, vec3 direction, bool straight) {
+    if (straight) return origin_behind(path.origin, p.position, p.error, p.geometric_normal, direction);
+    return offset_origin(p.position, p.error, p.geometric_normal, direction);
+}
+
+// What of the ray's contribution reaches its end.
+Spectrum follow_shadow_ray(ShadowRay shadow) {
+    float t_left = shadow.t_max;
+    while (true) {
+        Hit hit = find_hit(shadow.origin, shadow.direction, t_left);
+        bool met = hit.primitive != NO_RECORD;
+        pass_medium(shadow, met ? hit.t : t_left);
+        if (!met) return weighed(shadow);
+        SurfacePoint p = locate(hit, shadow.origin, shadow.direction);
+        Crossing sides = meet_faces(shadow.origin, shadow.direction, shadow.around, hit, p);
+        if (is_there(sides)) {
+            if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
+            ScatteringPoint s = scattering_point(p, shadow.direction, sides);
+            shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
+            if (is_black(shadow.contribution)) return Spectrum(0);
+        }
+        vec3 origin = origin_behind(shadow.origin, p.position, p.error, p.geometric_normal, shadow.direction);
+        t_left = t_left < INFINITY ? t_left - dot(origin - shadow.origin, shadow.direction) : INFINITY;
+        if (!(t_left > 0.0)) return weighed(shadow);
+        shadow.origin = origin;
+        shadow.around = surroundings_towards(sides, p, shadow.direction);
+        if (bends_rays(shadow.around.medium)) return Spectrum(0);
+    }
+}
+
+#else
+vec3 origin_of_next(Path path, SurfacePoint p, vec3 direction, bool straight) {
+    return offset_origin(p.position, p.error, p.geometric_normal, direction);
+}
+
+Spectrum follow_shadow_ray(ShadowRay shadow) {
+    if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return Spectrum(0);
+    pass_medium(shadow, shadow.t_max);
+    return weighed(shadow);
+}
+#endif

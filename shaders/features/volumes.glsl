@@ -1,0 +1,75 @@
+// Points within media where light scatters, made to look like points of a surface (lib/scattering.glsl).
+#include "features/weights.glsl"
+#include "interfaces/medium_optics.glsl"
+#include "lib/light_vertices.glsl"
+#include "lib/primitives.glsl"
+
+#if HAS_SCATTERING
+bool in_volume(ScatteringPoint s) { return s.phase != NO_RECORD; }
+bool is_in_volume(LightVertex v) { return v.primitive == NO_RECORD; }
+
+// Where a ray through a medium scatters, as if it had hit something there.
+SurfacePoint volume_point(vec3 position, vec3 direction) {
+    SurfacePoint p;
+    p.position = position;
+    p.error = vec3(0);
+    p.geometric_normal = p.shading_normal = direction;
+    p.tangent = p.color = vec4(1);
+    p.uv0 = p.uv1 = vec2(0);
+    p.material = p.light = NO_RECORD;
+    return p;
+}
+
+ScatteringPoint volume_scattering_point(vec3 position, vec3 direction, Surroundings around, bool importance) {
+    ScatteringPoint s;
+    s.frame = frame_around(direction);
+    s.normal = s.shading_normal = direction;
+    s.wo = vec3(0, 0, -1);
+    s.surface = s.material = NO_RECORD;
+    s.sides = no_crossing(around);
+    s.context = unbent_context(vec2(0), vec2(0), vec4(1), 1.0, 1.0, importance);
+    s.disperses = false;
+    s.phase = medium_phase(around.medium);
+    s.extinction = medium_mean_extinction(around.medium, position);
+    return s;
+}
+
+SurfacePair phase_pair(ScatteringPoint s, vec3 wi) {
+    float value = phase_value(s.phase, wi.z);
+    return SurfacePair(Spectrum(value), value, value);
+}
+
+BsdfSample phase_event(ScatteringPoint s, vec2 u) {
+    float cosine = phase_sample(s.phase, u.x);
+    vec2 around = cos_sin_turns(u.y) * sqrt(max(0.0, (1.0 - cosine) * (1.0 + cosine)));
+    return BsdfSample(vec3(around, cosine), Spectrum(1), phase_value(s.phase, cosine), EVENT_TRANSMIT);
+}
+
+bool scatters_rays(uint medium) { return medium_scatters(medium); }
+
+// Takes the path through its medium, to hit.t or to where it scatters before: then that is where.
+bool scatter_within(inout Path path, inout Hit hit, MediumRay ray) {
+    vec2 u = sample_2d(path.random);
+    FreePath free = medium_free_path(path.around.medium, ray, path.throughput, u, sample_seed(path.random));
+    path.throughput *= free.weight;
+    lessen_passage(path, free.passage);
+    // Never on the other side of what it would have hit, by rounding.
+    if (free.scatters) hit.t = min(free.distance, max(0.0, shadow_t_max(path.origin, hit.t)));
+    return free.scatters;
+}
+#else
+bool in_volume(ScatteringPoint s) { return false; }
+bool is_in_volume(LightVertex v) { return false; }
+SurfacePoint volume_point(vec3 position, vec3 direction) {
+    SurfacePoint p;
+    return p;
+}
+ScatteringPoint volume_scattering_point(vec3 position, vec3 direction, Surroundings around, bool importance) {
+    ScatteringPoint s;
+    return s;
+}
+SurfacePair phase_pair(ScatteringPoint s, vec3 wi) { return no_surface_pair(); }
+BsdfSample phase_event(ScatteringPoint s, vec2 u) { return no_bsdf_sample(); }
+bool scatters_rays(uint medium) { return false; }
+bool scatter_within(inout Path path, inout Hit hit, MediumRay ray) { return false; }
+#endif

@@ -1,0 +1,49 @@
+// What the ray of a path comes to: a point of its medium where it scatters, a surface, or nothing; whichever way it goes.
+#include "features/bending.glsl"
+#include "features/faces.glsl"
+#include "lib/events.glsl"
+#include "lib/traversal.glsl"
+
+struct Arrival {
+    bool is_event;   // else a bent ray has ended a step, or faces are not there, and the path goes on if it `lives`
+    bool lives;
+    bool scatters;   // at a point of the medium
+    bool escapes;    // there is nothing; p is undefined
+    SurfacePoint p;
+    Crossing sides;  // of p
+};
+
+// The ray has crossed its medium to `hit`, where it `scatters`, or to what it has met; the path carried this before.
+Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, inout Counters counters) {
+    Arrival a;
+    a.is_event = a.lives = true;
+    a.scatters = scatters;
+    a.escapes = !scatters && hit.primitive == NO_RECORD;
+    a.sides = no_crossing(path.around);
+    if (scatters) {
+        a.p = volume_point(path.origin + hit.t * path.direction, path.direction);
+    } else if (!a.escapes) {
+        a.p = locate(hit, path.origin, path.direction);
+        a.sides = meet_faces(path.origin, path.direction, path.around, hit, a.p);
+        if (is_bent(path) && !end_step_at(path, a.p, hit.t)) {
+            path.throughput = carried;
+            a.is_event = false;
+            a.lives = count_step(path, counters);
+        } else if (!is_there(a.sides)) {
+            pass_faces(path, a.p, a.sides);
+            a.is_event = false;
+        }
+    } else if (is_bent(path)) {
+        end_step(path);
+        a.is_event = false;
+        a.lives = count_step(path, counters);
+    }
+    return a;
+}
+
+// How light scatters there. `importance`: for forward rays, about the shading normal.
+ScatteringPoint scattering_at(Path path, Arrival a, bool importance) {
+    if (a.scatters) return volume_scattering_point(a.p.position, path.direction, path.around, importance);
+    if (importance) return shaded_point(a.p, path.direction, a.sides, true);
+    return scattering_point(a.p, path.direction, a.sides);
+}
