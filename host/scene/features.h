@@ -29,7 +29,7 @@ struct Features {
     bool independent_samples = false;  // hashes take the place of Sobol' points
     bool light_tree = false;
     uint32_t spectral_bins = 0;    // of a spectral image; set by the renderer
-    uint32_t texture_formats = 7;  // of lib/textures.glsl, a bit each
+    uint32_t texture_formats = 7;  // of features/textures.glsl, a bit each
     uint32_t bvh_stack_size = 64;  // references that a traversal can hold back
     uint32_t light_count = 0;      // finite and infinite lights
     uint32_t infinite_light_count = 0;

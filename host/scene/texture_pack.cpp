@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-// As in shaders/lib/textures.glsl.
+// As in shaders/features/textures.glsl.
 enum Format : uint32_t { format_data8 = 0, format_srgb8 = 1, format_float = 2 };
 
 uint32_t parse_index(const json& object, const char* key, uint32_t fallback, size_t count,

@@ -36,7 +36,7 @@ TextureUse parse_texture_info(const nlohmann::json& info, TextureContent content
 // Index of `use` in `uses`, appended where it is new: the index that a TextureRef holds.
 uint32_t texture_index(std::vector<TextureUse>& uses, const TextureUse& use);
 
-// Twin of the struct Texture of shaders/lib/textures.glsl, scalar layout.
+// Twin of the struct Texture of shaders/features/textures.glsl, scalar layout.
 struct TextureRecord {
     uint32_t first, width, height, format_and_wrap;
     glm::vec4 uv_matrix;

@@ -22,7 +22,7 @@
 #include "features/spectrum.glsl"
 #include "lib/records.glsl"
 #include "lib/warps.glsl"
-#include "lib/textures.glsl"
+#include "features/textures.glsl"
 
 struct SurfaceContext {
     vec2 uv0, uv1;          // texture coordinates

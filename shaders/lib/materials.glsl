@@ -1,7 +1,7 @@
 // What a surface is made of: how it scatters, what it separates, what it emits.
 #include "lib/records.glsl"
 #include "features/spectrum.glsl"
-#include "lib/textures.glsl"
+#include "features/textures.glsl"
 
 struct Material {
     SpectrumRef emission;         // radiance, before the texture

@@ -14,10 +14,7 @@ struct MeasuredMap {
 
 layout(scalar, set = 0) readonly buffer MeasuredPoints { vec2 measured_points[]; };
 
-// Slices around a fixed direction: two, or four where its azimuth counts, too.
-#ifndef MEASURED_SLICES
-#define MEASURED_SLICES 4
-#endif
+// Slices around a fixed direction: MEASURED_SLICES of them.
 struct MeasuredSlices {
     uvec4 index;
     vec4 weight;  // sums to one

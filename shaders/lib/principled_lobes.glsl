@@ -18,29 +18,14 @@ float schlick_bound(float f0, float f90, float alpha, bool is_smooth, float mu, 
 // D(mu), of the dielectric's specular part. Of two widths, the greater of their bounds.
 float principled_bound(PrincipledMaterial m, float mu, out float average) {
     float f0 = max_component(m.f0);
-#ifdef ABSENT_principled_anisotropy
-    float widest = m.alpha;
-    float bound = schlick_bound(f0, m.f90, m.alpha, m.smooth_facets, mu, average);
-#else
-    float widest = m.alpha.x, average_y;
-    float x = schlick_bound(f0, m.f90, m.alpha.x, m.smooth_facets, mu, average);
-    float y = schlick_bound(f0, m.f90, m.alpha.y, m.smooth_facets, mu, average_y);
-    average = max(average, average_y);
-    float bound = max(x, y);
-#endif
-#ifndef ABSENT_principled_iridescence
-    if (m.iridescence > 0.0) {
-        // The most that a film reflects at normal incidence, and towards grazing angles more than any film of index 1 to
-        // 2.5 on bases of 1 to 3; what rough facets add is less than the last term.
-        float a = (m.film - 1.0) / (m.film + 1.0), b = 0.0;
-        for (int i = 0; i < m.f0.length(); ++i)
-            b = max(b, abs((m.dielectric_index[i] - m.film) / (m.dielectric_index[i] + m.film)));
-        float most = square((a + b) / (1.0 + a * b)), tail = m.smooth_facets ? 0.04 : 0.04 + 0.1 * widest;
-        float film = most + (1.0 - most) * min(pow(max(1.0 - mu, 1e-7), 1.5) + tail, 0.999);
-        bound = mix(bound, m.f90 * film, m.iridescence);
-        average = mix(average, m.f90 * (most + (1.0 - most) * 2.0 / (2.5 * 3.5)), m.iridescence);
+    float bound = 0.0;
+    average = 0.0;
+    for (uint i = 0u; i < PRINCIPLED_WIDTHS; ++i) {
+        float own;
+        bound = max(bound, schlick_bound(f0, m.f90, principled_width(m.alpha, i), m.smooth_facets, mu, own));
+        average = max(average, own);
     }
-#endif
+    bound_film(m, mu, principled_width(m.alpha, 0u), bound, average);
     return bound;
 }
 
@@ -50,11 +35,8 @@ float principled_coat_fresnel(PrincipledMaterial m, float cos_o) {
     return m.coat * mix(COAT_F0, 1.0, schlick_weight(cos_o));
 }
 float principled_coat_passes(PrincipledMaterial m, vec3 w) {
-    float mu = principled_coat_cosine(m, w);
-    if (!(m.coat > 0.0)) return 1.0;
-#if COAT_HAS_NORMAL
-    if (!(mu > 0.0)) return 1.0;
-#endif
+    float mu = coat_cosine(m.coat_normal, w);
+    if (!(m.coat > 0.0) || !is_above_coat(mu)) return 1.0;
     float average;
     return 1.0 - m.coat * schlick_bound(COAT_F0, 1.0, m.coat_alpha, m.coat_alpha < SMOOTH_ALPHA, mu, average);
 }
@@ -63,15 +45,6 @@ float principled_layers_pass(PrincipledMaterial m, vec3 w, out float coat_passes
     coat_passes = principled_coat_passes(m, w);
     return m.sheen_most > 0.0 ? coat_passes * (1.0 - m.sheen_most * sheen_albedo_bound(w.z, m.sheen_roughness)) : coat_passes;
 }
-
-// The coat's f times the cosine that belongs to the direction of light, about its own normal; what the caller multiplies
-// by is about z, and forward rays meet the surface with that cosine (Veach 1997, section 5.3.2).
-#if COAT_HAS_NORMAL
-float principled_coat_correction(PrincipledMaterial m, vec3 wo, vec3 wi) {
-    if (!m.importance) return 1.0;
-    return principled_coat_cosine(m, wo) * wi.z / max(principled_coat_cosine(m, wi) * wo.z, 1e-6);
-}
-#endif
 
 float principled_transmission_scale(PrincipledMaterial m) {
     return m.thin || m.importance ? 1.0 : 1.0 / (m.eta * m.eta);
@@ -105,24 +78,7 @@ void principled_facet(PrincipledMaterial m, float cos_o, out Spectrum reflected,
     }
     Spectrum f_metal = mix(m.color, Spectrum(1), s);
     Spectrum passes = Spectrum(1.0 - max_component(f_transmitter));  // a coloured reflection leaves no other colour behind
-#ifndef ABSENT_principled_iridescence
-    if (m.iridescence > 0.0)
-        for (int i = 0; i < 3; ++i) {  // a loop, so that the code stands once
-            bool solid = i == 2 && !m.thin;
-            if (!((i == 0 ? m.metal : i == 1 ? m.opaque : m.transmitter) > 0.0)) continue;
-            float near = solid ? m.near : 1.0;
-            Spectrum base = i == 0 ? m.metal_index : solid ? Spectrum(m.near * m.eta) : m.dielectric_index;
-            Spectrum film = thin_film_reflectance(cos_o, near, Spectrum(m.film), m.film_thickness, base, Spectrum(0));
-            if (i == 0) f_metal = mix(f_metal, film, m.iridescence);
-            // Beyond the critical angle of a solid nothing else takes what is not reflected.
-            bool total = solid && (1.0 - cos_o) * (1.0 + cos_o) >= m.eta * m.eta;
-            if (i == 1) f = mix(f, film * m.f90, m.iridescence);
-            if (i == 2 && !total) {
-                f_transmitter = mix(f_transmitter, film * m.f90, m.iridescence);
-                passes = mix(passes, 1.0 - film * m.f90, m.iridescence);
-            }
-        }
-#endif
+    reflect_by_film(m, cos_o, f_metal, f, f_transmitter, passes);
     reflected = m.metal * f_metal + m.opaque * f + m.transmitter * f_transmitter;
     transmitted = m.transmitter * passes * m.color;
 }
@@ -167,10 +123,8 @@ PrincipledChoice principled_choice(PrincipledMaterial m, vec3 wo) {
     // nothing.
     float facets = m.coverage * max(passes * brightness(reflected + transmitted), 0.02);
     float coat = 0.0, sheen = 0.0;
-    if (m.coat > 0.0) coat = m.coverage * max(principled_coat_fresnel(m, principled_coat_cosine(m, wo)), 0.02);
-#if COAT_HAS_NORMAL
-    if (!(principled_coat_cosine(m, wo) > 0.0)) coat = 0.0;
-#endif
+    if (m.coat > 0.0) coat = m.coverage * max(principled_coat_fresnel(m, coat_cosine(m.coat_normal, wo)), 0.02);
+    if (!is_above_coat(coat_cosine(m.coat_normal, wo))) coat = 0.0;
     if (m.sheen_most > 0.0)
         sheen = m.coverage * choice.coat_passes * brightness(m.sheen) *
                 max(sheen_albedo_bound(mu_o, m.sheen_roughness), 0.02);
@@ -199,18 +153,12 @@ Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float
         pdf += choice.sheen_probability * 0.5 * INV_PI;
     }
     if (m.coat > 0.0 && m.coat_alpha >= SMOOTH_ALPHA && reflects) {
-#if COAT_HAS_NORMAL
-        vec3 o = principled_to_coat(m, wo), i = principled_to_coat(m, wi), h = reflection_normal(o, i);
-        if (o.z > 0.0 && i.z > 0.0) {
+        vec3 o = to_coat(m.coat_normal, wo), i = to_coat(m.coat_normal, wi), h = reflection_normal(o, i);
+        if (is_above_coat(o.z) && is_above_coat(i.z)) {
             value += m.coverage * principled_coat_fresnel(m, dot(o, h)) * ggx_reflection(o, i, h, m.coat_alpha) *
-                     principled_coat_correction(m, wo, wi);
+                     coat_correction(m.coat_normal, m.importance, wo, wi);
             pdf += choice.coat_probability * ggx_reflection_pdf(o, h, m.coat_alpha);
         }
-#else
-        vec3 h = reflection_normal(wo, wi);
-        value += m.coverage * principled_coat_fresnel(m, dot(wo, h)) * ggx_reflection(wo, wi, h, m.coat_alpha);
-        pdf += choice.coat_probability * ggx_reflection_pdf(wo, h, m.coat_alpha);
-#endif
     }
     if (m.smooth_facets) return value;
 
@@ -232,12 +180,8 @@ Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoi
     bool reflects = wi.z > 0.0;
     Spectrum value = Spectrum(0);
     probability = 0.0;
-#if COAT_HAS_NORMAL
-    bool apart = any(notEqual(m.coat_normal.xy, vec2(0)));
+    bool apart = coat_is_apart(m.coat_normal);
     bool facets = m.smooth_facets && !(apart && coat), coat_too = reflects && (coat || !apart);
-#else
-    bool facets = m.smooth_facets, coat_too = reflects;
-#endif
     if (facets) {
         float part = principled_reflection_part(choice.reflected, choice.transmitted);
         probability = choice.facet_probability * (reflects ? part : 1.0 - part);
@@ -247,11 +191,8 @@ Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoi
     }
     if (coat_too && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA) {
         probability += choice.coat_probability;
-        Spectrum reflected = Spectrum(principled_coat_fresnel(m, principled_coat_cosine(m, wo)));
-#if COAT_HAS_NORMAL
-        reflected *= principled_coat_correction(m, wo, wi);
-#endif
-        value += reflected;
+        value += Spectrum(principled_coat_fresnel(m, coat_cosine(m.coat_normal, wo)) *
+                          coat_correction(m.coat_normal, m.importance, wo, wi));
     }
     return m.coverage * value;
 }

@@ -7,6 +7,8 @@
 // one another. Numbers are multiples of 2^-24 in [0, 1).
 //
 // INDEPENDENT_SAMPLES: hashes in place of the points, for whoever wants errors to fall exactly as 1 / sqrt(samples).
+#include "features/defaults.glsl"
+
 struct Sampler {
     uint index;       // of the sample in its pixel
     uint pixel_hash;  // of pixel and seed
@@ -62,32 +64,25 @@ Sampler start_forward_sampler(uint pass, uint index, uint count, uint seed) {
     return Sampler((pass >> 1) * count + index, hash_3d(uvec3(~0u, pass & 1u, seed)).x, 0u);
 }
 
-#if INDEPENDENT_SAMPLES
-vec2 sample_2d(inout Sampler s) {
-    uvec3 hashes = hash_3d(uvec3(s.pixel_hash, s.dimension, s.index));
-    s.dimension++;
-    return vec2(hashes.xy >> 8) * (1.0 / 16777216.0);
+// The hashes of the next pair.
+uvec3 next_hashes(inout Sampler s) {
+    return hash_3d(uvec3(s.pixel_hash, s.dimension++, INDEPENDENT_SAMPLES == 1 ? s.index : 0u));
 }
 
-float sample_1d(inout Sampler s) {
-    return sample_2d(s).x;
-}
-#else
 vec2 sample_2d(inout Sampler s) {
-    uvec3 seeds = hash_3d(uvec3(s.pixel_hash, s.dimension, 0u));
-    s.dimension++;
+    uvec3 seeds = next_hashes(s);
+    if (INDEPENDENT_SAMPLES == 1) return vec2(seeds.xy >> 8) * (1.0 / 16777216.0);
     uint index = bitfieldReverse(scramble_reversed(bitfieldReverse(s.index), seeds.x));
     uvec2 reversed = uvec2(scramble_reversed(index, seeds.y), scramble_reversed(sobol_second_reversed(index), seeds.z));
     return vec2(bitfieldReverse(reversed) >> 8) * (1.0 / 16777216.0);
 }
 
 float sample_1d(inout Sampler s) {
-    uvec3 seeds = hash_3d(uvec3(s.pixel_hash, s.dimension, 0u));
-    s.dimension++;
+    uvec3 seeds = next_hashes(s);
+    if (INDEPENDENT_SAMPLES == 1) return float(seeds.x >> 8) * (1.0 / 16777216.0);
     uint index = bitfieldReverse(scramble_reversed(bitfieldReverse(s.index), seeds.x));
     return float(bitfieldReverse(scramble_reversed(index, seeds.y)) >> 8) * (1.0 / 16777216.0);
 }
-#endif
 
 // To start a generator of its own with, for estimators that need any number of numbers: another one after every pair drawn.
 uint sample_seed(Sampler s) { return hash_3d(uvec3(s.pixel_hash ^ 0x9E3779B9u, s.dimension, s.index)).x; }

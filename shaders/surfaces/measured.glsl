@@ -7,6 +7,9 @@
 // the media on the sides differ, what is transmitted is what the table says from the less dense side; the denser side
 // loses what refraction turns back.
 #include "lib/accurate_math.glsl"
+#ifndef MEASURED_SLICES
+#define MEASURED_SLICES 4  // around a fixed direction: two, or four where its azimuth counts, too
+#endif
 #include "lib/measured_maps.glsl"
 
 // Bits of `kind`.

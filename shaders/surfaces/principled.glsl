@@ -59,6 +59,9 @@ struct Principled {
     TextureRef sheen_roughness_texture;     //: none data. Alpha multiplies sheen_roughness.
 };
 
+#include "features/principled_anisotropy.glsl"
+#include "features/principled_coat_normal.glsl"
+
 Principled principled_resolve(Principled r, SurfaceContext c) {
     r.base_color *= c.color * texture_value(r.base_color_texture, c.uv0, c.uv1);
     vec4 metallic_roughness = texture_value(r.metallic_roughness_texture, c.uv0, c.uv1);
@@ -75,25 +78,10 @@ Principled principled_resolve(Principled r, SurfaceContext c) {
     r.diffuse_transmission_color *= texture_value(r.diffuse_transmission_color_texture, c.uv0, c.uv1).rgb;
     r.clearcoat *= texture_value(r.clearcoat_texture, c.uv0, c.uv1).r;
     r.clearcoat_roughness *= texture_value(r.clearcoat_roughness_texture, c.uv0, c.uv1).g;
-#ifndef ABSENT_principled_clearcoat_normal_scale
-    if (r.clearcoat_normal_scale != 0.0) {
-        vec3 n = r.clearcoat_normal;
-        if (r.clearcoat_normal_texture.index != NO_RECORD)
-            n = 2.0 * texture_value(r.clearcoat_normal_texture, c.uv0, c.uv1).xyz - 1.0;
-        n.xy *= r.clearcoat_normal_scale;
-        n = from_mesh_frame(c, n);
-        r.clearcoat_normal = n.z > 0.0 ? normalize(n) : vec3(0, 0, 1);
-    }
-#endif
+    resolve_coat_normal(r, c);
     r.sheen_color *= texture_value(r.sheen_color_texture, c.uv0, c.uv1).rgb;
     r.sheen_roughness *= texture_value(r.sheen_roughness_texture, c.uv0, c.uv1).a;
-#ifndef ABSENT_principled_anisotropy
-    if (r.anisotropy_texture.index != NO_RECORD) {
-        vec3 t = texture_value(r.anisotropy_texture, c.uv0, c.uv1).xyz;
-        r.anisotropy *= t.z;
-        r.anisotropy_rotation += atan(2.0 * t.y - 1.0, 2.0 * t.x - 1.0);
-    }
-#endif
+    resolve_anisotropy(r, c);
     return r;
 }
 
@@ -139,9 +127,7 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     }
     bool is_delta = !diffuse && !sheen && (coat ? m.coat_alpha < SMOOTH_ALPHA : m.smooth_facets);
 
-#if COAT_HAS_NORMAL
-    if (coat) wo = principled_to_coat(m, wo);
-#endif
+    if (coat) wo = to_coat(m.coat_normal, wo);
     vec3 h = vec3(0, 0, 1);
     if (!is_delta) h = ggx_sample_visible(wo, coat ? PrincipledWidth(m.coat_alpha) : m.alpha, u.xy);
     float cos_o = dot(wo, h);
@@ -157,12 +143,10 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     if (!reflects && !m.thin) refract_direction(wo, h, cos_o, m.eta, wi);
     if (diffuse) wi = warp_cosine_hemisphere(u.xy) * vec3(1, 1, through ? -1 : 1);
     if (sheen) wi = warp_sphere(vec2(0.5 * u.x, u.y));
-#if COAT_HAS_NORMAL
     if (coat) {
-        if (wi.z <= 0.0) return no_bsdf_sample();  // below the coat, if not below the surface
-        wo = principled_from_coat(m, wo), wi = principled_from_coat(m, wi);
+        if (!is_above_coat(wi.z)) return no_bsdf_sample();
+        wo = from_coat(m.coat_normal, wo), wi = from_coat(m.coat_normal, wi);
     }
-#endif
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
 
     BsdfSample result = scattered(principled_turned_back(m, wi) * vec3(1, 1, side), reflects ? EVENT_REFLECT : EVENT_TRANSMIT);

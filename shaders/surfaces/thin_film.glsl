@@ -7,7 +7,7 @@
 // media that match, or so nearly that refraction is not resolved, facets count as smooth: a soap film.
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
-#include "lib/thin_film.glsl"
+#include "features/thin_film_spectra.glsl"
 
 struct ThinFilm {
     SpectrumRef ior;               //: 1.33 in [0.1, 100] ior. Real refractive index of the film.

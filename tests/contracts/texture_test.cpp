@@ -19,7 +19,7 @@ struct Query {
 
 const char* probe = R"(
     #include "lib/records.glsl"
-    #include "lib/textures.glsl"
+    #include "features/textures.glsl"
     layout(local_size_x = 64) in;
     struct Query { uint texture; vec2 uv0, uv1; };
     layout(scalar, set = 0) readonly buffer Queries { Query queries[]; };

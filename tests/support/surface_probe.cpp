@@ -62,7 +62,7 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     for (size_t i = 0; i < textures.size(); ++i)
         texture_text += fmt::format("if (ref.index == {}u) return vec4({}, {}, {}, {});\n", i, textures[i].x,
                                     textures[i].y, textures[i].z, textures[i].w);
-    sources.generated["lib/textures.glsl"] = texture_text + "return vec4(1);\n}\n";
+    sources.generated["features/textures.glsl"] = texture_text + "return vec4(1);\n}\n";
 
     Device& device = test_device();
     records_ = create_buffer(device, records.bytes(), "surface records");

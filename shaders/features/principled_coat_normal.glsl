@@ -1,0 +1,43 @@
+// Coats of the class `principled` with a normal of their own.
+#include "lib/frames.glsl"
+
+#ifndef ABSENT_principled_clearcoat_normal_scale
+#define SURFACES_USE_MESH_FRAME  // features/normal_maps.glsl
+#ifndef SURFACES_HAVE_TANGENTS
+#define SURFACES_HAVE_TANGENTS
+#endif
+
+void resolve_coat_normal(inout Principled r, SurfaceContext c) {
+    if (r.clearcoat_normal_scale == 0.0) return;
+    vec3 n = r.clearcoat_normal;
+    if (r.clearcoat_normal_texture.index != NO_RECORD)
+        n = 2.0 * texture_value(r.clearcoat_normal_texture, c.uv0, c.uv1).xyz - 1.0;
+    n.xy *= r.clearcoat_normal_scale;
+    n = from_mesh_frame(c, n);
+    r.clearcoat_normal = n.z > 0.0 ? normalize(n) : vec3(0, 0, 1);
+}
+
+// Directions in a frame around the normal of the coat, and back.
+vec3 to_coat(vec3 normal, vec3 w) { return w * frame_around(normal); }
+vec3 from_coat(vec3 normal, vec3 w) { return frame_around(normal) * w; }
+float coat_cosine(vec3 normal, vec3 w) { return dot(normal, w); }
+// Whether a direction above the surface, in that frame or by that cosine, is above the coat, too.
+bool is_above_coat(float cosine) { return cosine > 0.0; }
+// Whether the coat reflects elsewhere than the facets.
+bool coat_is_apart(vec3 normal) { return any(notEqual(normal.xy, vec2(0))); }
+
+// The coat's f times the cosine that belongs to the direction of light, about its own normal; what the caller multiplies
+// by is about z, and forward rays meet the surface with that cosine (Veach 1997, section 5.3.2).
+float coat_correction(vec3 normal, bool importance, vec3 wo, vec3 wi) {
+    if (!importance) return 1.0;
+    return coat_cosine(normal, wo) * wi.z / max(coat_cosine(normal, wi) * wo.z, 1e-6);
+}
+#else
+void resolve_coat_normal(inout Principled r, SurfaceContext c) {}
+vec3 to_coat(vec3 normal, vec3 w) { return w; }
+vec3 from_coat(vec3 normal, vec3 w) { return w; }
+float coat_cosine(vec3 normal, vec3 w) { return w.z; }
+bool is_above_coat(float cosine) { return true; }
+bool coat_is_apart(vec3 normal) { return false; }
+float coat_correction(vec3 normal, bool importance, vec3 wo, vec3 wi) { return 1.0; }
+#endif
