@@ -67,16 +67,14 @@ struct BvhSettings {
 // Boxes must be finite and not inverted (they may be points). Throws Error for more than bvh_max_primitives.
 Bvh build_bvh(std::span<const Box> boxes, unsigned threads, BvhSettings settings = {});
 
-enum class NodeFormat { quantised, floats };
 constexpr uint32_t bvh_header_entries = 2;
 
 // Appends the tree to the `nodes` buffer's entries as the device reads them, and returns the entry of its
 // header, where a traversal starts. `first_primitive`: where in `primitives` its first one stands.
-uint32_t encode_bvh(const Bvh& bvh, NodeFormat format, uint32_t first_primitive,
-                    std::vector<glm::uvec4>& entries);
+uint32_t encode_bvh(const Bvh& bvh, uint32_t first_primitive, std::vector<glm::uvec4>& entries);
 
-// Share of the leaves whose boxes more than double in area by rounding to the 16-bit grid. From about a tenth
-// on rays that go there are faster with float nodes.
+// Share of the leaves whose boxes more than double in area by rounding to the 16-bit grid: rays
+// that go there test primitives for nothing.
 double coarse_share(const Bvh& bvh);
 
 }  // namespace etendue

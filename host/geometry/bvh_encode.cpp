@@ -40,10 +40,9 @@ struct Grid {
 
 }  // namespace
 
-uint32_t encode_bvh(const Bvh& bvh, NodeFormat format, uint32_t first_primitive,
-                    std::vector<glm::uvec4>& entries) {
+uint32_t encode_bvh(const Bvh& bvh, uint32_t first_primitive, std::vector<glm::uvec4>& entries) {
     const auto header = static_cast<uint32_t>(entries.size());
-    const uint32_t node_entries = format == NodeFormat::quantised ? 2 : 4;
+    constexpr uint32_t node_entries = 2;
     const uint32_t base = header + bvh_header_entries;
     const auto moved = [&](BvhReference r) {
         if (r == bvh_nothing) return r;
@@ -60,11 +59,6 @@ uint32_t encode_bvh(const Bvh& bvh, NodeFormat format, uint32_t first_primitive,
     for (const BvhNode& node : bvh.nodes) {
         for (int i = 0; i < 2; i++) {
             const Box& box = node.bounds[i];
-            if (format == NodeFormat::floats) {
-                entries.emplace_back(bits(box.lo), moved(node.child[i]));
-                entries.emplace_back(bits(box.hi), 0u);
-                continue;
-            }
             glm::uvec3 words;
             for (int axis = 0; axis < 3; axis++)
                 words[axis] = grid.down(box.lo[axis], axis) | grid.up(box.hi[axis], axis) << 16;

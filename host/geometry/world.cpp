@@ -111,10 +111,10 @@ class Builder {
     // A tree over `primitives`, which are appended to the world's in leaf order, `order`. Returns the tree's
     // header.
     uint32_t add_tree(const std::vector<PrimitiveRecord>& primitives, const std::vector<Box>& boxes,
-                      NodeFormat format, std::vector<uint32_t>* order = nullptr) {
+                      std::vector<uint32_t>* order = nullptr) {
         const Bvh bvh = build_bvh(boxes, threads_);
         const uint32_t first = uint32_t(world_.primitives.size());
-        const uint32_t header = encode_bvh(bvh, format, first, world_.nodes);
+        const uint32_t header = encode_bvh(bvh, first, world_.nodes);
         world_.primitives.reserve(first + primitives.size());
         for (uint32_t i : bvh.order) world_.primitives.push_back(primitives[i]);
         if (order) *order = bvh.order;
@@ -233,7 +233,7 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
 
     for (const Box& box : boxes) world.bounds.grow(box);
     std::vector<uint32_t> order;
-    builder.add_tree(primitives, boxes, NodeFormat::quantised, &order);
+    builder.add_tree(primitives, boxes, &order);
     for (uint32_t& i : order) i = placed[i];
     world.placed = std::make_shared<const std::vector<uint32_t>>(std::move(order));
     world.world_primitives = uint32_t(world.primitives.size());
@@ -246,7 +246,7 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
         builder.add_triangles(scene.meshes[mesh], glm::dmat4(1.0), triangles);
         std::vector<Box> triangle_boxes;
         for (const PrimitiveRecord& p : triangles) triangle_boxes.push_back(triangle_box(p));
-        headers[mesh] = builder.add_tree(triangles, triangle_boxes, NodeFormat::quantised);
+        headers[mesh] = builder.add_tree(triangles, triangle_boxes);
         features.triangles = true;
     }
     for (uint32_t i = 0; i < world.world_primitives; ++i)

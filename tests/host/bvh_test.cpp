@@ -87,7 +87,7 @@ TEST_CASE("a hierarchy over nothing has no root") {
     CHECK(bvh.root == bvh_nothing);
     CHECK(bvh.nodes.empty());
     std::vector<glm::uvec4> entries;
-    CHECK(encode_bvh(bvh, NodeFormat::quantised, 0, entries) == 0);
+    CHECK(encode_bvh(bvh, 0, entries) == 0);
     CHECK(entries[0].w == bvh_nothing);
 }
 
@@ -108,7 +108,7 @@ TEST_CASE("points in one place make a tree of no extent") {
     const Bvh bvh = build_bvh(boxes, 1);
     check_tree(bvh, boxes);
     std::vector<glm::uvec4> entries;
-    encode_bvh(bvh, NodeFormat::quantised, 0, entries);
+    encode_bvh(bvh, 0, entries);
     CHECK(std::isfinite(std::bit_cast<float>(entries[1].x)));
 }
 
@@ -163,7 +163,7 @@ TEST_CASE("quantised boxes hold the exact ones") {
         }
         const Bvh bvh = build_bvh(boxes, 1);
         std::vector<glm::uvec4> entries(7);
-        const uint32_t header = encode_bvh(bvh, NodeFormat::quantised, 1000, entries);
+        const uint32_t header = encode_bvh(bvh, 1000, entries);
         REQUIRE(header == 7);
         const auto number = [](uint32_t word) { return double(std::bit_cast<float>(word)); };
         uint32_t mistakes = 0;

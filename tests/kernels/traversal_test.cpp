@@ -81,15 +81,6 @@ TEST_CASE("the hierarchy finds the triangle that brute force finds, at any scale
     }
 }
 
-TEST_CASE("float nodes find the same") {
-    const std::vector<glm::vec3> vertices = random_triangles(1500, 1, 0.1f);
-    GeometryProbe probe;
-    add_triangles(probe, vertices);
-    probe.build(NodeFormat::floats);
-    const std::vector<ProbeRay> rays = many_rays(7000, 1, vertices);
-    CHECK(disagreements(probe.trace(rays), rays) == 0);
-}
-
 TEST_CASE("triangles in few planes, with shared edges along the axes, are found as by brute force") {
     GeometryProbe probe;
     std::vector<glm::vec3> vertices;
@@ -117,36 +108,32 @@ TEST_CASE("triangles in few planes, with shared edges along the axes, are found 
 }
 
 TEST_CASE("shapes, triangles and instances in one hierarchy are found as by brute force") {
-    for (const NodeFormat format : {NodeFormat::quantised, NodeFormat::floats}) {
-        Random random(3);
-        GeometryProbe probe;
-        const std::vector<glm::vec3> vertices = random_triangles(200, 1, 0.2f);
-        add_triangles(probe, vertices);
-        const Box unit{glm::vec3(-1), glm::vec3(1)}, flat{{-1, -1, 0}, {1, 1, 0}};
-        for (int i = 0; i < 8; i++) {
-            const glm::dmat4 scale = glm::scale(glm::dmat4(1), glm::dvec3(0.15));
-            probe.add_shape("sphere", {{"radius", 1}}, unit, random.placement(1) * scale);
-            probe.add_shape("disk", {{"radius", 1}}, flat, random.placement(1) * scale);
-            probe.add_shape("rectangle", {{"size", {2, 2}}}, flat, random.placement(1) * scale);
-            probe.add_shape("cylinder", {{"radius", 1}, {"height", 2}}, unit, random.placement(1) * scale);
-        }
-        const uint32_t mesh = probe.add_mesh(icosphere(2, 0.2f));
-        const uint32_t single = probe.add_mesh({{0, 0, 0}, {0.3f, 0, 0}, {0, 0.3f, 0}});
-        for (int i = 0; i < 12; i++) probe.add_instance(i % 4 ? mesh : single, random.placement(1));
-        probe.build(format);
-        const std::vector<ProbeRay> rays = many_rays(7000, 1, vertices);
-        CHECK(disagreements(probe.trace(rays), rays) == 0);
-
-        std::vector<uint32_t> instances;
-        const std::vector<ProbeTrace> traces = probe.trace(rays, false);
-        const std::vector<glm::vec4> hits = probe.find_hits(rays, &instances);
-        size_t different = 0;
-        for (size_t i = 0; i < rays.size(); i++)
-            different += hits[i].x != traces[i].hit.t ||
-                         std::bit_cast<uint32_t>(hits[i].w) != traces[i].hit.primitive ||
-                         instances[i] != traces[i].hit.instance;
-        CHECK(different == 0);
+    Random random(3);
+    GeometryProbe probe;
+    const std::vector<glm::vec3> vertices = random_triangles(200, 1, 0.2f);
+    add_triangles(probe, vertices);
+    const Box unit{glm::vec3(-1), glm::vec3(1)}, flat{{-1, -1, 0}, {1, 1, 0}};
+    for (int i = 0; i < 8; i++) {
+        const glm::dmat4 scale = glm::scale(glm::dmat4(1), glm::dvec3(0.15));
+        probe.add_shape("sphere", {{"radius", 1}}, unit, random.placement(1) * scale);
+        probe.add_shape("disk", {{"radius", 1}}, flat, random.placement(1) * scale);
+        probe.add_shape("rectangle", {{"size", {2, 2}}}, flat, random.placement(1) * scale);
+        probe.add_shape("cylinder", {{"radius", 1}, {"height", 2}}, unit, random.placement(1) * scale);
     }
+    const uint32_t mesh = probe.add_mesh(icosphere(2, 0.2f));
+    const uint32_t single = probe.add_mesh({{0, 0, 0}, {0.3f, 0, 0}, {0, 0.3f, 0}});
+    for (int i = 0; i < 12; i++) probe.add_instance(i % 4 ? mesh : single, random.placement(1));
+    probe.build();
+    const std::vector<ProbeRay> rays = many_rays(7000, 1, vertices);
+    CHECK(disagreements(probe.trace(rays), rays) == 0);
+
+    const std::vector<ProbeTrace> traces = probe.trace(rays, false);
+    const std::vector<ProbeHit> hits = probe.find_hits(rays);
+    size_t different = 0;
+    for (size_t i = 0; i < rays.size(); i++)
+        different += hits[i].t != traces[i].hit.t || hits[i].primitive != traces[i].hit.primitive ||
+                     hits[i].instance != traces[i].hit.instance;
+    CHECK(different == 0);
 }
 
 TEST_CASE("an empty world is missed by every ray") {
@@ -198,8 +185,7 @@ size_t count_leaks(size_t batches, size_t batch) {
                     break;
             }
         }
-        for (const glm::vec4& hit : probe.find_hits(rays))
-            leaks += std::bit_cast<uint32_t>(hit.w) == no_record;
+        for (const ProbeHit& hit : probe.find_hits(rays)) leaks += hit.primitive == no_record;
     }
     return leaks;
 }

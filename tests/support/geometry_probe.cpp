@@ -137,12 +137,12 @@ void GeometryProbe::add_instance(uint32_t mesh, const glm::dmat4& world_from_loc
     instance_meshes_.back() = mesh;
 }
 
-void GeometryProbe::build(NodeFormat format) {
+void GeometryProbe::build() {
     const auto add_tree = [&](const std::vector<PrimitiveRecord>& primitives, const std::vector<Box>& boxes) {
         const Bvh bvh = build_bvh(boxes, 2);
         const auto first = uint32_t(world_.primitives.size());
         for (uint32_t i : bvh.order) world_.primitives.push_back(primitives[i]);
-        return std::pair(encode_bvh(bvh, format, first, world_.nodes), first);
+        return std::pair(encode_bvh(bvh, first, world_.nodes), first);
     };
     add_tree(placed_, boxes_);
     world_.world_primitives = uint32_t(placed_.size());
@@ -183,7 +183,6 @@ void GeometryProbe::build(NodeFormat format) {
     geometry_ = create_buffer(test_device(), records_.bytes(), "geometry records");
     sources_.generated["generated/geometry_classes.glsl"] =
         class_header(interface_info(Interface::geometry), classes);
-    float_nodes_ = format == NodeFormat::floats;
 }
 
 UnrolledTraversal GeometryProbe::unroll() {
@@ -200,8 +199,7 @@ Kernel GeometryProbe::kernel(const std::string& name, const std::string& text, B
     ShaderSources sources = sources_;
     if (!text.empty()) sources.generated[name] = text;
     CompileOptions options;
-    options.defines =
-        features_.defines() + fmt::format("#define HAS_FLOAT_NODES {}\n", int(float_nodes_)) + defines;
+    options.defines = features_.defines() + defines;
     buffers["Nodes"] = &nodes_;
     buffers["Primitives"] = &primitives_;
     buffers["Transforms"] = &transforms_;
@@ -223,24 +221,20 @@ std::vector<ProbeTrace> GeometryProbe::trace(const std::vector<ProbeRay>& rays, 
     return out.read_array<ProbeTrace>(count);
 }
 
-std::vector<glm::vec4> GeometryProbe::find_hits(const std::vector<ProbeRay>& rays,
-                                                std::vector<uint32_t>* instances) {
+std::vector<ProbeHit> GeometryProbe::find_hits(const std::vector<ProbeRay>& rays) {
     const auto count = uint32_t(rays.size());
     std::vector<glm::vec4> origins, directions;
     for (const ProbeRay& r : rays)
         origins.emplace_back(r.origin, 0), directions.emplace_back(r.direction, r.t_max);
     const Buffer o = create_buffer(test_device(), origins, "ray origins");
     const Buffer d = create_buffer(test_device(), directions, "ray directions");
-    const Buffer hits(test_device(), count * sizeof(glm::vec4), "hits");
-    const Buffer hit_instances(test_device(), count * sizeof(uint32_t), "hit instances");
-    const Kernel find = kernel(
-        "kernels/find_hits.comp", "",
-        {{"RayOrigins", &o}, {"RayDirections", &d}, {"Hits", &hits}, {"HitInstances", &hit_instances}});
+    const Buffer hits(test_device(), count * sizeof(ProbeHit), "hits");
+    const Kernel find =
+        kernel("kernels/find_hits.comp", "", {{"RayOrigins", &o}, {"RayDirections", &d}, {"Hits", &hits}});
     CommandList list(test_device());
     list.dispatch(find, std::max(1u, count / 64 / 16), {{"ray_count", count}});
     list.run();
-    if (instances) *instances = hit_instances.read_array<uint32_t>(count);
-    return hits.read_array<glm::vec4>(count);
+    return hits.read_array<ProbeHit>(count);
 }
 
 std::vector<glm::vec3> icosphere(int subdivisions, float radius) {

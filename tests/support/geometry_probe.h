@@ -45,15 +45,13 @@ class GeometryProbe {
     void add_instance(uint32_t mesh, const glm::dmat4& world_from_local);
 
     // Builds the hierarchies and compiles what the world needs.
-    void build(NodeFormat format = NodeFormat::quantised);
+    void build();
     // Puts straight code in the place of the hierarchy (host/geometry/unrolled_traversal.h), after build().
     UnrolledTraversal unroll();
 
     // `brute_force` = false leaves `expected` undefined and takes a fraction of the time.
     std::vector<ProbeTrace> trace(const std::vector<ProbeRay>& rays, bool brute_force = true);
-    // Rays that the kernel find_hits traces, as (t, u, v, primitive).
-    std::vector<glm::vec4> find_hits(const std::vector<ProbeRay>& rays,
-                                     std::vector<uint32_t>* instances = nullptr);
+    std::vector<ProbeHit> find_hits(const std::vector<ProbeRay>& rays);  // by the kernel of that name
 
     // Of a kernel that includes lib/primitives.glsl; `buffers` are the kernel's own.
     Kernel kernel(const std::string& name, const std::string& text, BufferTable buffers,
@@ -79,7 +77,6 @@ class GeometryProbe {
     World world_;
     ShaderSources sources_;
     Features features_;
-    bool float_nodes_ = false;
     Buffer nodes_, primitives_, transforms_, geometry_;
 };
 
