@@ -26,7 +26,7 @@ float beam_density(float extinction, vec3 position) {
 
 bool comes_from_beam(Path path) { return (path.flags & PATH_AFTER_BEAM) != 0u; }
 #else
-bool merges_along(uint medium) { return false; }
-float beam_density(float extinction, vec3 position) { return 0.0; }
-bool comes_from_beam(Path path) { return false; }
+#define merges_along(medium) false
+#define beam_density(extinction, position) 0.0
+#define comes_from_beam(path) false
 #endif

@@ -89,11 +89,11 @@ bool end_step_at(inout Path path, SurfacePoint p, float distance) {
 }
 
 #else
-void start_bending(inout Path path) {}
-bool is_bent(Path path) { return false; }
-bool bends_rays(uint medium) { return false; }
-float begin_ray(inout Path path) { return INFINITY; }
-bool count_step(inout Path path, inout Counters counters) { return true; }
-float end_step(inout Path path) { return 0.0; }
-bool end_step_at(inout Path path, SurfacePoint p, float distance) { return true; }
+#define start_bending(path)
+#define is_bent(path) false
+#define bends_rays(medium) false
+#define begin_ray(path) INFINITY
+#define count_step(path, counters) true
+#define end_step(path) 0.0
+#define end_step_at(path, p, distance) true
 #endif

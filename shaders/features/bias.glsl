@@ -18,6 +18,6 @@ void record_bias(inout FilmPixel pixel, Path path) {
     if (is_finite(bias)) add_bias(pixel, bias);
 }
 #else
-void start_bias(inout Path path) {}
-void record_bias(inout FilmPixel pixel, Path path) {}
+#define start_bias(path)
+#define record_bias(pixel, path)
 #endif

@@ -20,8 +20,8 @@ void part_where_index_does(inout Path path, uint medium) {
 }
 bool is_monochrome(Path path) { return (path.flags & PATH_MONOCHROME) != 0u; }
 #else
-bool has_one_index(Spectrum ior) { return true; }
-void part_at_interface(inout Path path, bool parts) {}
-void part_where_index_does(inout Path path, uint medium) {}
-bool is_monochrome(Path path) { return false; }
+#define has_one_index(ior) true
+#define part_at_interface(path, parts)
+#define part_where_index_does(path, medium)
+#define is_monochrome(path) false
 #endif

@@ -135,22 +135,17 @@ void pass_faces(inout Path path, SurfacePoint p, Crossing c) {
 }
 
 #else
-bool is_there(Crossing c) { return true; }
-bool bounds_by_priority(Material m) { return false; }
+#define is_there(c) true
+#define bounds_by_priority(m) false
 Crossing no_crossing(Surroundings around) { return Crossing(around, around); }
 
-void keep_medium_above(inout LightVertex v, uint medium) {}
-Crossing crossing_of_vertex(LightVertex v, uint material, Surroundings around) {
+#define keep_medium_above(v, medium)
+Crossing sides_of_face(uint material, Surroundings around) {
     Crossing c;
     sides_of(materials[material], around, c.above, c.below);
     return c;
 }
-
-Crossing meet_faces(vec3 origin, vec3 direction, Surroundings around, inout Hit hit, inout SurfacePoint p) {
-    Crossing c;
-    sides_of(materials[p.material], around, c.above, c.below);
-    return c;
-}
-
-void pass_faces(inout Path path, SurfacePoint p, Crossing c) {}
+#define meet_faces(origin, direction, around, hit, p) sides_of_face(p.material, around)
+#define crossing_of_vertex(v, material, around) sides_of_face(material, around)
+#define pass_faces(path, p, c)
 #endif

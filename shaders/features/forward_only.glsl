@@ -12,6 +12,6 @@ bool leaves_rest(inout Path path, uint event) {
     return false;
 }
 #else
-bool forward_brings(Path path) { return false; }
-bool leaves_rest(inout Path path, uint event) { return false; }
+#define forward_brings(path) false
+#define leaves_rest(path, event) false
 #endif

@@ -12,6 +12,6 @@ float hit_limit(Hit hit) {
 // Whether a hit comes after one and before another.
 bool lies_between(Hit hit, Hit after, Hit before) { return comes_after(hit, after) && comes_after(before, hit); }
 #else
-float hit_limit(Hit hit) { return hit.t; }
-bool lies_between(Hit hit, Hit after, Hit before) { return true; }
+#define hit_limit(hit) hit.t
+#define lies_between(hit, after, before) true
 #endif

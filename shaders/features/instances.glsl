@@ -21,6 +21,6 @@ void leave_instance(inout Traversal w) {
     w.node = traversal_stack[w.height];
 }
 #else
-void enter_instance(inout Traversal w, Triangle primitive, uint index, bool last) {}
-void leave_instance(inout Traversal w) {}
+#define enter_instance(w, primitive, index, last)
+#define leave_instance(w)
 #endif

@@ -8,18 +8,29 @@ layout(scalar, set = 0) writeonly buffer PathEnds { uvec2 path_ends[]; };  // pe
 void end_forward_path(uint path_index, Path path) { path_ends[path_index] = path.vertices; }
 #else
 #include "lib/events.glsl"
-void store_vertex(inout Path path, uint path_index, SurfacePoint p, ScatteringPoint s, Hit hit, VertexMis mis) {}
-void end_forward_path(uint path_index, Path path) {}
+#define store_vertex(path, path_index, p, s, hit, mis)
+#define end_forward_path(path_index, path)
 #endif
 
 #else
+#include "stages/trace_shadow.glsl"
 #if CONNECT_VERTICES
 #include "stages/connect_vertices.glsl"
+// What the shadow rays of an event bring: a loop, so that the code stands once.
+Spectrum trace_shadows(ShadowRay shadow, ShadowRay vertex_shadow, inout Counters counters) {
+    Spectrum sum = Spectrum(0);
+    for (uint i = 0u; i < 2u; ++i) {
+        sum += trace_shadow(shadow, counters);
+        shadow = vertex_shadow;
+    }
+    return sum;
+}
 #else
+#define trace_shadows(shadow, vertex_shadow, counters) trace_shadow(shadow, counters)
 #include "lib/events.glsl"
 struct Connection { vec3 wi; };
-Connection no_connection(vec3 wi) { return Connection(wi); }
-Connection choose_vertex(inout Sampler random, SurfacePoint p, ScatteringPoint s) { return no_connection(vec3(0)); }
+#define no_connection(wi) Connection(wi)
+#define choose_vertex(random, p, s) Connection(vec3(0))
 #endif
 
 #if MERGE_VERTICES
@@ -31,14 +42,20 @@ ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, Vert
     return connect_vertices(path, p, s, mis, c, here, there, scattering_pair(there, -c.direction * there.frame));
 }
 #else
-ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, Connection c, SurfacePair here, bool merges) {
-    return no_shadow_ray();
-}
+#define meet_vertices(path, p, s, mis, c, here, merges) no_shadow_ray()
 #endif
 
+// Takes a path through its medium, as cross_medium(); where rays merge, with the vertices along its way.
 #if BEAMS
 #include "stages/merge_along.glsl"
+bool cross_and_merge(inout Path path, inout Hit hit) {
+    Path before = path;
+    float to_surface = hit.t;
+    bool scatters = cross_medium(path, hit);
+    merge_along(path, before, to_surface, hit.t);
+    return scatters;
+}
 #else
-void merge_along(inout Path sum, Path path, float to_surface, float free_path) {}
+#define cross_and_merge(path, hit) cross_medium(path, hit)
 #endif
 #endif

@@ -31,7 +31,7 @@ bool is_short_edge(vec3 merging, vec3 next) {
     return distance(merging, next) < forward_pass.short_scale * receiver_footprint(forward_pass.receiver, merging, film_aspect());
 }
 #else
-float merge_radius(vec3 position) { return 0.0; }
-float merge_density(bool in_volume, vec3 position) { return 0.0; }
-bool is_short_edge(vec3 merging, vec3 next) { return false; }
+#define merge_radius(position) 0.0
+#define merge_density(in_volume, position) 0.0
+#define is_short_edge(merging, next) false
 #endif

@@ -147,16 +147,12 @@ float others_of_receiver_sample(Path path, ScatteringPoint s, vec3 direction, fl
 }
 
 #else
-void start_forward_weights(inout Path path, float density, bool is_delta, uint light, vec3 normal) {}
-VertexMis vertex_mis(Path path, SurfacePoint p, ScatteringPoint s) { return VertexMis(0.0, 0.0, 0.0, false); }
-void update_mis(inout Path path, VertexMis m, uint material, BsdfSample b, float pdf_reverse, float cosine) {}
+#define start_forward_weights(path, density, is_delta, light, normal)
+#define vertex_mis(path, p, s) VertexMis(0.0, 0.0, 0.0, false)
+#define update_mis(path, m, material, b, pdf_reverse, cosine)
 
-float others_of_hit(Path path, uint light, LightHit hit, float sampling) { return sampling / (path.pdf * passage_of(path)); }
-bool hit_stands_alone(Path path) { return !(path.pdf > 0.0); }
-float others_of_light_sample(Path path, ScatteringPoint s, LightSample l, uint light, SurfacePair pair, VertexMis mis) {
-    return (l.is_delta ? 0.0 : pair.pdf) / l.pdf;
-}
-float others_of_receiver_sample(Path path, ScatteringPoint s, vec3 direction, float importance, SurfacePair pair, VertexMis mis) {
-    return 0.0;
-}
+#define others_of_hit(path, light, hit, sampling) (sampling / (path.pdf * passage_of(path)))
+#define hit_stands_alone(path) (!(path.pdf > 0.0))
+#define others_of_light_sample(path, s, l, light, pair, mis) ((l.is_delta ? 0.0 : pair.pdf) / l.pdf)
+#define others_of_receiver_sample(path, s, direction, importance, pair, mis) 0.0
 #endif

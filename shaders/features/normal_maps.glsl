@@ -22,13 +22,12 @@ mat3 bent_frame(mat3 frame, SurfacePoint p, Material m) {
     return frame_along(normalize(frame * t), frame[0], p.tangent.w);
 }
 #else
-mat3 bent_frame(mat3 frame, SurfacePoint p, Material m) { return frame; }
+#define bent_frame(frame, p, m) frame
 #endif
 
 // The mesh's frame, for classes that ask for it.
 #if HAS_NORMAL_MAPS && defined(SURFACES_USE_MESH_FRAME)
 void keep_mesh_frame(inout SurfaceContext c, mat3 frame, mat3 unbent) { c.mesh_frame = transpose(frame) * unbent; }
 #else
-void keep_mesh_frame(inout SurfaceContext c, mat3 frame, mat3 unbent) {}
+#define keep_mesh_frame(c, frame, unbent)
 #endif
-void forget_mesh_frame(inout SurfaceContext c) { c.mesh_frame = mat3(1); }

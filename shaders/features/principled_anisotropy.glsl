@@ -34,11 +34,11 @@ vec3 turned_from_axis(vec2 axis, vec3 w) { return vec3(axis.x * w.x - axis.y * w
 #define PrincipledWidth float
 const uint PRINCIPLED_WIDTHS = 1u;
 float principled_width(PrincipledWidth alpha, uint i) { return alpha; }
-void resolve_anisotropy(inout Principled r, SurfaceContext c) {}
+#define resolve_anisotropy(r, c)
 PrincipledWidth principled_widths(Principled r, float width, out vec2 axis) {
     axis = vec2(1, 0);
     return width;
 }
-vec3 turned_to_axis(vec2 axis, vec3 w) { return w; }
-vec3 turned_from_axis(vec2 axis, vec3 w) { return w; }
+#define turned_to_axis(axis, w) (w)
+#define turned_from_axis(axis, w) (w)
 #endif

@@ -33,11 +33,11 @@ float coat_correction(vec3 normal, bool importance, vec3 wo, vec3 wi) {
     return coat_cosine(normal, wo) * wi.z / max(coat_cosine(normal, wi) * wo.z, 1e-6);
 }
 #else
-void resolve_coat_normal(inout Principled r, SurfaceContext c) {}
-vec3 to_coat(vec3 normal, vec3 w) { return w; }
-vec3 from_coat(vec3 normal, vec3 w) { return w; }
-float coat_cosine(vec3 normal, vec3 w) { return w.z; }
-bool is_above_coat(float cosine) { return true; }
-bool coat_is_apart(vec3 normal) { return false; }
-float coat_correction(vec3 normal, bool importance, vec3 wo, vec3 wi) { return 1.0; }
+#define resolve_coat_normal(r, c)
+#define to_coat(normal, w) (w)
+#define from_coat(normal, w) (w)
+#define coat_cosine(normal, w) (w).z
+#define is_above_coat(cosine) true
+#define coat_is_apart(normal) false
+#define coat_correction(normal, importance, wo, wi) 1.0
 #endif

@@ -18,7 +18,7 @@ void record_event(Path path, SurfacePoint p, uint event) {
 }
 void record_departure() { recorded_event.followed = true; }
 #else
-void record_light(uint light) {}
-void record_event(Path path, SurfacePoint p, uint event) {}
-void record_departure() {}
+#define record_light(light)
+#define record_event(path, p, event)
+#define record_departure()
 #endif

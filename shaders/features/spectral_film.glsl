@@ -19,5 +19,5 @@ void add_to_bins(uint pixel, Spectrum radiance) {
     }
 }
 #else
-void add_to_bins(uint pixel, Spectrum radiance) {}
+#define add_to_bins(pixel, radiance)
 #endif

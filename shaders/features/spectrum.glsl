@@ -99,15 +99,18 @@ Spectrum untinted_value(SpectrumRef ref) {
 
 Spectrum spectrum_value(SpectrumRef ref) {
     Spectrum value = untinted_value(ref);
-    if (HAS_TINTS && (ref.table & TINTED_SPECTRUM) != 0u) value *= factor_of_rgb(ref.rgb);
+    if (HAS_TINTS) {
+        if ((ref.table & TINTED_SPECTRUM) != 0u) value *= factor_of_rgb(ref.rgb);
+    }
     return value;
 }
 
 // Multiplies a parameter by a color, as textures do.
 void scale_spectrum(inout SpectrumRef ref, vec3 color) {
-    if (!HAS_TINTS) return;
-    ref.rgb = (ref.table & TINTED_SPECTRUM) != 0u ? ref.rgb * color : color;
-    ref.table |= TINTED_SPECTRUM;
+    if (HAS_TINTS) {
+        ref.rgb = (ref.table & TINTED_SPECTRUM) != 0u ? ref.rgb * color : color;
+        ref.table |= TINTED_SPECTRUM;
+    }
 }
 
 #else

@@ -41,5 +41,5 @@ void add_splats(uint pixel, inout Spectrum radiance, inout vec3 rgb) {
     rgb += spectrum_rgb(sum);
 }
 #else
-void add_splats(uint pixel, inout Spectrum radiance, inout vec3 rgb) {}
+#define add_splats(pixel, radiance, rgb)
 #endif

@@ -5,6 +5,7 @@
 #include "lib/scattering.glsl"
 #include "lib/traversal.glsl"
 
+#if HAS_MEDIA
 // A number for the ray that no other has, for media that need random numbers.
 uint shadow_seed(ShadowRay shadow) {
     uvec3 where = hash_3d(floatBitsToUint(shadow.origin)), how = floatBitsToUint(shadow.direction);
@@ -13,22 +14,24 @@ uint shadow_seed(ShadowRay shadow) {
 
 // Through the medium that the ray is in.
 void pass_medium(inout ShadowRay shadow, float distance) {
-    if (HAS_MEDIA == 0 || shadow.around.medium == NO_RECORD) return;
+    if (shadow.around.medium == NO_RECORD) return;
     MediumRay ray = MediumRay(shadow.origin, shadow.direction, distance);
     Passage passage = medium_pass(shadow.around.medium, ray, shadow_seed(shadow));
     shadow.contribution *= passage.transmittance;
     lessen_others(shadow, passage.mean);
 }
+#else
+#define pass_medium(shadow, distance)
+#endif
 
 // Whether all of a shadow ray's way is one search for a hit, any hit.
 const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0;
 
 #if HAS_STRAIGHT
 // Where a ray goes on behind a surface.
-vec3 origin_of_next(Path path, SurfacePoint p, vec3 direction, bool straight) {
-    if (straight) return origin_behind(path.origin, p.position, p.error, p.geometric_normal, direction);
-    return offset_origin(p.position, p.error, p.geometric_normal, direction);
-}
+#define origin_of_next(path, p, direction, straight)                                                           \
+    (straight ? origin_behind(path.origin, p.position, p.error, p.geometric_normal, direction)                 \
+              : offset_origin(p.position, p.error, p.geometric_normal, direction))
 
 // What of the ray's contribution reaches its end.
 Spectrum follow_shadow_ray(ShadowRay shadow) {
@@ -56,9 +59,7 @@ Spectrum follow_shadow_ray(ShadowRay shadow) {
 }
 
 #else
-vec3 origin_of_next(Path path, SurfacePoint p, vec3 direction, bool straight) {
-    return offset_origin(p.position, p.error, p.geometric_normal, direction);
-}
+#define origin_of_next(path, p, direction, straight) offset_origin(p.position, p.error, p.geometric_normal, direction)
 
 Spectrum follow_shadow_ray(ShadowRay shadow) {
     if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return Spectrum(0);

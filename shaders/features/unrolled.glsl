@@ -15,9 +15,9 @@ void traversal_begin(out Traversal w, vec3 origin, vec3 direction, float t_max, 
     else
         w.hit = find_hit(origin, direction, t_max);
 }
-void traversal_end(out Traversal w) {}
-bool is_done(Traversal w) { return true; }
-void traversal_step(inout Traversal w, const bool any_hit) {}
+#define traversal_end(w)
+#define is_done(w) true
+#define traversal_step(w, any_hit)
 #else
 #include "lib/hierarchy_walk.glsl"
 #endif

@@ -48,6 +48,6 @@ void triangle_uv(Triangle r, vec3 position, inout vec2 uv0, inout vec2 uv1) {
     uv1 = mat3x2(a.uv1, b.uv1, c.uv1) * weights;
 }
 #else
-void interpolate_attributes(inout SurfacePoint s, Triangle r, vec2 uv, inout vec3 shading) {}
-void triangle_uv(Triangle r, vec3 position, inout vec2 uv0, inout vec2 uv1) {}
+#define interpolate_attributes(s, r, uv, shading)
+#define triangle_uv(r, position, uv0, uv1)
 #endif

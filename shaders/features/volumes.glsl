@@ -58,18 +58,15 @@ bool scatter_within(inout Path path, inout Hit hit, MediumRay ray) {
     return free.scatters;
 }
 #else
-bool in_volume(ScatteringPoint s) { return false; }
-bool is_in_volume(LightVertex v) { return false; }
-SurfacePoint volume_point(vec3 position, vec3 direction) {
-    SurfacePoint p;
-    return p;
-}
+#define in_volume(s) false
+#define is_in_volume(v) false
+#define volume_point(position, direction) SurfacePoint(vec3(0), vec3(0), vec3(0), vec3(0), vec4(0), vec2(0), vec2(0), vec4(0), 0u, 0u)
+#define phase_pair(s, wi) no_surface_pair()
+#define phase_event(s, u) no_bsdf_sample()
+#define scatters_rays(medium) false
+#define scatter_within(path, hit, ray) false
 ScatteringPoint volume_scattering_point(vec3 position, vec3 direction, Surroundings around, bool importance) {
     ScatteringPoint s;
     return s;
 }
-SurfacePair phase_pair(ScatteringPoint s, vec3 wi) { return no_surface_pair(); }
-BsdfSample phase_event(ScatteringPoint s, vec2 u) { return no_bsdf_sample(); }
-bool scatters_rays(uint medium) { return false; }
-bool scatter_within(inout Path path, inout Hit hit, MediumRay ray) { return false; }
 #endif

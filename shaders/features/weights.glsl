@@ -18,8 +18,8 @@ void forget_weights(inout Path path) {
     path.flags |= PATH_AFTER_NARROW;
 }
 #else
-void start_weights(inout Path path, float vcm, float vc) {}
-void forget_weights(inout Path path) {}
+#define start_weights(path, vcm, vc)
+#define forget_weights(path)
 #endif
 
 #if HAS_SCATTERING
@@ -33,11 +33,11 @@ void lessen_others(inout ShadowRay ray, float passage) {
     if (medium_scatters(ray.around.medium)) ray.others *= passage;
 }
 #else
-void start_passage(inout Path path) {}
-void lessen_passage(inout Path path, float passage) {}
-float passage_of(Path path) { return 1.0; }
-void weigh(inout ShadowRay ray, float others) { ray.contribution *= mis_weight(others); }
-void lessen_others(inout ShadowRay ray, float passage) {}
+#define start_passage(path)
+#define lessen_passage(path, passage)
+#define passage_of(path) 1.0
+#define weigh(ray, others) ray.contribution *= mis_weight(others)
+#define lessen_others(ray, passage)
 #endif
 
 // The density of others that needs no passage, and what the ray brings where nothing has stopped it.
@@ -45,9 +45,9 @@ void lessen_others(inout ShadowRay ray, float passage) {}
 void weigh_apart(inout ShadowRay ray, float others) { ray.others_apart = others; }
 Spectrum weighed(ShadowRay ray) { return ray.contribution * mis_weight(ray.others + ray.others_apart); }
 #elif HAS_SCATTERING
-void weigh_apart(inout ShadowRay ray, float others) {}
+#define weigh_apart(ray, others)
 Spectrum weighed(ShadowRay ray) { return ray.contribution * mis_weight(ray.others); }
 #else
-void weigh_apart(inout ShadowRay ray, float others) {}
-Spectrum weighed(ShadowRay ray) { return ray.contribution; }
+#define weigh_apart(ray, others)
+#define weighed(ray) ray.contribution
 #endif

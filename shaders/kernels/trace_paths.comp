@@ -18,7 +18,6 @@ layout(push_constant) uniform Push {
 #include "stages/emit_camera_ray.glsl"
 #include "stages/record_sample.glsl"
 #include "stages/scatter_path.glsl"
-#include "stages/trace_shadow.glsl"
 
 void main() {
     uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -40,10 +39,7 @@ void main() {
         Hit hit = find_hit(path.origin, path.direction, end);
         ShadowRay shadow, vertex_shadow;
         alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
-        for (uint i = 0u; i < SHADOW_RAYS; ++i) {  // a loop, so that the code stands once
-            path.radiance += trace_shadow(shadow, counters);
-            shadow = vertex_shadow;
-        }
+        path.radiance += trace_shadows(shadow, vertex_shadow, counters);
         if (!alive) {
             record_bias(sum, path);
             record_sample(sum, pixel, path.radiance, counters);

@@ -27,19 +27,8 @@ const uint BVH_COUNT_ONE = 0x20000000u;
 const uint BVH_NOTHING = 0xFFFFFFFEu;  // no reference: nothing left to visit
 const uint BVH_RETURN = 0xFFFFFFFFu;   // on the stack: the instance is done, go on in world space
 
-const uint KIND_TRIANGLE = 0u;
-const uint KIND_SHAPE = 1u;
-const uint KIND_INSTANCE = 2u;
-uint attributes_kind(uint attributes) { return attributes >> 30; }
+#include "features/primitive_kinds.glsl"
 uint attributes_index(uint attributes) { return attributes & 0x3FFFFFFFu; }
-
-// Kinds that the scene lacks are known to be absent.
-const bool ONLY_TRIANGLES = HAS_SHAPES == 0 && HAS_INSTANCES == 0;
-bool is_triangle(uint attributes) {
-    return HAS_TRIANGLES == 1 && (ONLY_TRIANGLES || attributes_kind(attributes) == KIND_TRIANGLE);
-}
-bool is_shape(uint attributes) { return HAS_SHAPES == 1 && attributes_kind(attributes) == KIND_SHAPE; }
-bool is_instance(uint attributes) { return HAS_INSTANCES == 1 && attributes_kind(attributes) == KIND_INSTANCE; }
 
 // An affine map and its inverse, each rounded from doubles.
 struct Transform {

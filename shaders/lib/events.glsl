@@ -8,8 +8,10 @@
 bool cross_medium(inout Path path, inout Hit hit) {
     MediumRay ray = MediumRay(path.origin, path.direction, hit.t);
     if (scatters_rays(path.around.medium)) return scatter_within(path, hit, ray);
-    if (HAS_MEDIA == 1 && path.around.medium != NO_RECORD)
-        path.throughput *= medium_pass(path.around.medium, ray, sample_seed(path.random)).transmittance;
+    if (HAS_MEDIA == 1) {
+        if (path.around.medium != NO_RECORD)
+            path.throughput *= medium_pass(path.around.medium, ray, sample_seed(path.random)).transmittance;
+    }
     return false;
 }
 

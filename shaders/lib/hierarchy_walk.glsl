@@ -34,10 +34,9 @@ void traversal_enter(inout Traversal w, uint header, vec3 origin, vec3 direction
 
 #include "features/instances.glsl"
 
-// Only hits after this one count; it may have the same distance.
-void traversal_begin_after(out Traversal w, vec3 origin, vec3 direction, float t_max, Hit after) {
+void traversal_begin(out Traversal w, vec3 origin, vec3 direction, float t_max, const bool any_hit) {
     w.hit = Hit(t_max, vec2(0), NO_RECORD, NO_RECORD);
-    w.after = after;
+    w.after = Hit(0.0, vec2(0), NO_RECORD, NO_RECORD);
     traversal_enter(w, WORLD_HEADER, origin, direction);
     w.node = nodes[WORLD_HEADER].w;
     traversal_stack[0] = BVH_NOTHING;
@@ -47,25 +46,8 @@ void traversal_begin_after(out Traversal w, vec3 origin, vec3 direction, float t
     w.instance = NO_RECORD;
 }
 
-void traversal_begin(out Traversal w, vec3 origin, vec3 direction, float t_max, const bool any_hit) {
-    traversal_begin_after(w, origin, direction, t_max, Hit(0.0, vec2(0), NO_RECORD, NO_RECORD));
-}
-
-void traversal_end(out Traversal w) { w.node = BVH_NOTHING; }
-bool is_done(Traversal w) { return w.node == BVH_NOTHING; }
-
-// Whether the ray meets the primitive, which is no instance.
-bool meet_primitive(Traversal w, Triangle primitive, out GeometryHit found) {
-    bool met = false;
-    if (is_triangle(primitive.attributes))
-        met = triangle_meet(w.shear, w.origin, w.direction, primitive.v0, primitive.v1, primitive.v2, hit_limit(w.hit), found);
-    if (is_shape(primitive.attributes)) {
-        mat4x3 m = transform_at(floatBitsToUint(primitive.v0.y)).local_from_world;
-        met = geometry_intersect(floatBitsToUint(primitive.v0.x), m * vec4(w.origin, 1.0), m * vec4(w.direction, 0.0),
-                                 hit_limit(w.hit), found);
-    }
-    return met;
-}
+#define traversal_end(w) w.node = BVH_NOTHING
+#define is_done(w) (w.node == BVH_NOTHING)
 
 void traversal_step(inout Traversal w, const bool any_hit) {
     if (w.node < BVH_LEAF) {
@@ -89,7 +71,14 @@ void traversal_step(inout Traversal w, const bool any_hit) {
         w.height = last ? w.height - 1u : w.height;
         Triangle primitive = primitives[index];
         GeometryHit found;
-        bool met = meet_primitive(w, primitive, found);
+        bool met = false;
+        if (is_triangle(primitive.attributes))
+            met = triangle_meet(w.shear, w.origin, w.direction, primitive.v0, primitive.v1, primitive.v2, hit_limit(w.hit), found);
+        if (is_shape(primitive.attributes)) {
+            mat4x3 m = transform_at(floatBitsToUint(primitive.v0.y)).local_from_world;
+            met = geometry_intersect(floatBitsToUint(primitive.v0.x), m * vec4(w.origin, 1.0), m * vec4(w.direction, 0.0),
+                                     hit_limit(w.hit), found);
+        }
         Hit hit = Hit(found.t, found.uv, index, w.instance);
         if (met && lies_between(hit, w.after, w.hit)) {
             w.hit = hit;
@@ -112,7 +101,9 @@ Hit find_hit(vec3 origin, vec3 direction, float t_max) {
 // The first hit after another one, which may have the same distance. Only with priorities.
 Hit find_hit_after(vec3 origin, vec3 direction, float t_max, Hit after) {
     Traversal w;
-    traversal_begin_after(w, origin, direction, t_max, after);
+    traversal_begin(w, origin, direction, t_max, false);
+    w.after = after;
+    w.skipped = after.t * (1.0 - 4.0 * EPSILON) - w.box.start;
     while (!is_done(w)) traversal_step(w, false);
     return w.hit;
 }

@@ -41,6 +41,16 @@ vec3 map_error(Transform m, vec3 local, vec3 local_error, vec3 world) {
            gamma(5.0) * absolute_map(m.world_from_local, local, 1.0);
 }
 
+// A point in the frame of its shape or mesh, as it is in world space.
+void place_point(inout SurfacePoint s, LocalPoint p, Transform to_world, inout vec3 shading) {
+    s.position = to_world.world_from_local * vec4(p.position, 1.0);
+    s.error = map_error(to_world, p.position, p.error, s.position);
+    s.geometric_normal = normalize(normal_to_world(to_world, p.normal));
+    shading = normal_to_world(to_world, shading);
+    s.tangent.xyz = mat3(to_world.world_from_local) * s.tangent.xyz;
+    s.tangent.w *= transform_determinant(to_world) < 0.0 ? -1.0 : 1.0;
+}
+
 // What the ray has hit. `hit.primitive` must not be NO_RECORD.
 SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
     Triangle r = primitives[hit.primitive];
@@ -63,20 +73,14 @@ SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
         s.uv0 = s.uv1 = vec2(0);
         s.tangent = vec4(p.tangent, 1.0);
         interpolate_attributes(s, r, hit.uv, shading);
-        if (HAS_INSTANCES == 1 && hit.instance != NO_RECORD) transform = floatBitsToUint(primitives[hit.instance].v0.y);
+        if (HAS_INSTANCES == 1)
+            if (hit.instance != NO_RECORD) transform = floatBitsToUint(primitives[hit.instance].v0.y);
     }
     s.position = p.position;
     s.error = p.error;
     s.geometric_normal = p.normal;
-    if (!ONLY_TRIANGLES && transform != NO_RECORD) {
-        Transform to_world = transform_at(transform);
-        s.position = to_world.world_from_local * vec4(p.position, 1.0);
-        s.error = map_error(to_world, p.position, p.error, s.position);
-        s.geometric_normal = normalize(normal_to_world(to_world, p.normal));
-        shading = normal_to_world(to_world, shading);
-        s.tangent.xyz = mat3(to_world.world_from_local) * s.tangent.xyz;
-        s.tangent.w *= transform_determinant(to_world) < 0.0 ? -1.0 : 1.0;
-    }
+    if (!ONLY_TRIANGLES)
+        if (transform != NO_RECORD) place_point(s, p, transform_at(transform), shading);
     float length2 = dot(shading, shading);
     s.shading_normal = length2 > 0.0 ? shading * inversesqrt(length2) : s.geometric_normal;
     if (dot(s.shading_normal, s.geometric_normal) < 0.0) s.shading_normal = -s.shading_normal;

@@ -18,14 +18,13 @@ float schlick_bound(float f0, float f90, float alpha, bool is_smooth, float mu, 
 // D(mu), of the dielectric's specular part. Of two widths, the greater of their bounds.
 float principled_bound(PrincipledMaterial m, float mu, out float average) {
     float f0 = max_component(m.f0);
-    float bound = 0.0;
-    average = 0.0;
-    for (uint i = 0u; i < PRINCIPLED_WIDTHS; ++i) {
-        float own;
-        bound = max(bound, schlick_bound(f0, m.f90, principled_width(m.alpha, i), m.smooth_facets, mu, own));
-        average = max(average, own);
+    float bound = schlick_bound(f0, m.f90, principled_width(m.alpha, 0u), m.smooth_facets, mu, average);
+    if (PRINCIPLED_WIDTHS > 1u) {
+        float other;
+        bound = max(bound, schlick_bound(f0, m.f90, principled_width(m.alpha, 1u), m.smooth_facets, mu, other));
+        average = max(average, other);
     }
-    bound_film(m, mu, principled_width(m.alpha, 0u), bound, average);
+    bound_film(m.film, m.f90, mu, m.smooth_facets ? 0.0 : principled_width(m.alpha, 0u), bound, average);
     return bound;
 }
 
@@ -78,7 +77,8 @@ void principled_facet(PrincipledMaterial m, float cos_o, out Spectrum reflected,
     }
     Spectrum f_metal = mix(m.color, Spectrum(1), s);
     Spectrum passes = Spectrum(1.0 - max_component(f_transmitter));  // a coloured reflection leaves no other colour behind
-    reflect_by_film(m, cos_o, f_metal, f, f_transmitter, passes);
+    reflect_by_film(m.film, vec3(m.metal, m.opaque, m.transmitter), m.thin, m.near, m.eta, m.f90, cos_o, f_metal, f, f_transmitter,
+                    passes);
     reflected = m.metal * f_metal + m.opaque * f + m.transmitter * f_transmitter;
     transmitted = m.transmitter * passes * m.color;
 }

@@ -1,4 +1,5 @@
 // The material of the class `principled` (surfaces/principled.glsl) at one point.
+#include "features/principled_iridescence.glsl"
 #include "lib/frames.glsl"
 #include "lib/fresnel.glsl"
 #include "lib/sheen.glsl"
@@ -29,11 +30,8 @@ struct PrincipledMaterial {
     Spectrum sheen;
     float sheen_most;   // greatest of it
     float sheen_roughness;
-    float iridescence;
-    float film, film_thickness;   // index, nm
-    Spectrum dielectric_index, metal_index;  // in air
+    PrincipledFilm film;
 };
-#include "features/principled_iridescence.glsl"
 
 PrincipledMaterial principled_material(Principled r, SurfaceContext c) {
     PrincipledMaterial m;
@@ -56,7 +54,7 @@ PrincipledMaterial principled_material(Principled r, SurfaceContext c) {
     m.importance = c.importance;
     m.through = clamp(r.diffuse_transmission, 0.0, 1.0);
     m.sent *= m.through;
-    set_film(m, r);
+    m.film = principled_film(r, m.f0 / max(m.f90, 1e-6), m.color);
     m.coat = clamp(r.clearcoat, 0.0, 1.0);
     m.coat_alpha = square(clamp(r.clearcoat_roughness, 0.0, 1.0));
     m.coat_normal_above = m.coat_normal = r.clearcoat_normal;

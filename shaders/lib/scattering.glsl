@@ -66,7 +66,7 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, Crossing sides, boo
 void flatten(inout ScatteringPoint s, vec3 direction) {
     s.frame = frame_around(s.normal);
     s.wo = -direction * s.frame;
-    forget_mesh_frame(s.context);
+    s.context.mesh_frame = mat3(1);
 }
 
 // Of a backward ray. Seen from a side that the shading normal faces away from, the surface is taken as flat.
@@ -74,6 +74,15 @@ ScatteringPoint scattering_point(SurfacePoint p, vec3 direction, Crossing sides)
     ScatteringPoint s = shaded_point(p, direction, sides, false);
     if (!is_consistent(s, -direction)) flatten(s, direction);
     return s;
+}
+
+// Of the ray that a kernel traces; forward rays see to their shading normals themselves.
+ScatteringPoint met_point(SurfacePoint p, vec3 direction, Crossing sides) {
+#if FORWARD
+    return shaded_point(p, direction, sides, true);
+#else
+    return scattering_point(p, direction, sides);
+#endif
 }
 
 // Forward rays must scatter into every direction as they would be seen from there: about the shading normal into

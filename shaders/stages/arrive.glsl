@@ -20,7 +20,7 @@ Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, 
     a.scatters = scatters;
     a.escapes = !scatters && hit.primitive == NO_RECORD;
     a.sides = no_crossing(path.around);
-    if (scatters) {
+    if (HAS_SCATTERING == 1 && scatters) {
         a.p = volume_point(path.origin + hit.t * path.direction, path.direction);
     } else if (!a.escapes) {
         a.p = locate(hit, path.origin, path.direction);
@@ -41,9 +41,9 @@ Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, 
     return a;
 }
 
-// How light scatters there. `importance`: for forward rays, about the shading normal.
-ScatteringPoint scattering_at(Path path, Arrival a, bool importance) {
-    if (a.scatters) return volume_scattering_point(a.p.position, path.direction, path.around, importance);
-    if (importance) return shaded_point(a.p, path.direction, a.sides, true);
-    return scattering_point(a.p, path.direction, a.sides);
+// How light scatters there.
+ScatteringPoint scattering_at(Path path, Arrival a) {
+    if (HAS_SCATTERING == 1)
+        if (a.scatters) return volume_scattering_point(a.p.position, path.direction, path.around, FORWARD == 1);
+    return met_point(a.p, path.direction, a.sides);
 }

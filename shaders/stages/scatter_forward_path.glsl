@@ -23,7 +23,7 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
 bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out uint kind, out ShadowRay shadow) {
     shadow = no_shadow_ray();
     SurfacePoint p = a.p;
-    ScatteringPoint s = scattering_at(path, a, true);
+    ScatteringPoint s = scattering_at(path, a);
     float flat_part = flat_probability(s, -path.direction);
     if (flat_part > 0.0 && (flat_part >= 1.0 || sample_1d(path.random) < flat_part)) flatten(s, path.direction);
     part_at_interface(path, s.disperses);

@@ -22,8 +22,9 @@ Spectrum collect_light(Path path, uint light, LightHit hit) {
     return path.throughput * radiance * mis_weight(others);
 }
 
-// Of the primitive that is met, or of all that surrounds the scene.
-void collect_emission(inout Path path, Arrival a) {
+// Radiance of the primitive that is met, or of all that surrounds the scene, as the pixel receives it.
+Spectrum collect_emission(Path path, Arrival a) {
+    Spectrum sum = Spectrum(0);
     LightHit hit = LightHit(vec3(0), vec3(0), vec2(0), vec2(0));
     uint light = 0u, end = a.escapes ? uint(INFINITE_LIGHT_COUNT) : 0u;
     if (!a.scatters && !a.escapes) {
@@ -31,7 +32,9 @@ void collect_emission(inout Path path, Arrival a) {
         end = a.p.light + 1u;  // 0 where it is no light
         hit = LightHit(a.p.position, a.p.geometric_normal, a.p.uv0, a.p.uv1);
     }
-    for (; HAS_LIGHTS && light < end; ++light) path.radiance += collect_light(path, light, hit);
+    if (HAS_LIGHTS)
+        for (; light < end; ++light) sum += collect_light(path, light, hit);
+    return sum;
 }
 
 // A light for the point: what it would bring if the surface scattered all of it. pdf 0 = none.
@@ -56,33 +59,33 @@ ShadowRay connect_light(Path path, SurfacePoint p, ScatteringPoint s, LightSampl
 // Returns whether the path goes on; the shadow rays are to be traced in either case.
 bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowRay shadow, out ShadowRay vertex_shadow) {
     shadow = vertex_shadow = no_shadow_ray();
-    Path before = path;
-    float to_surface = hit.t;
-    bool scatters = cross_medium(path, hit);
-    merge_along(path, before, to_surface, hit.t);
-    Arrival a = arrive(path, before.throughput, hit, scatters, counters);
+    Spectrum carried = path.throughput;
+    bool scatters = cross_and_merge(path, hit);
+    Arrival a = arrive(path, carried, hit, scatters, counters);
     if (!a.is_event) return a.lives;
-    collect_emission(path, a);
+    path.radiance += collect_emission(path, a);
     if (a.escapes) {
         counters.escaped += brightness(path.throughput);
         return false;
     }
     SurfacePoint p = a.p;
-    ScatteringPoint s = scattering_at(path, a, false);
+    ScatteringPoint s = scattering_at(path, a);
     part_at_interface(path, s.disperses);
     bool is_delta = is_delta_point(s);
     VertexMis mis = vertex_mis(path, p, s);
     // connect_lights, scatter_surfaces
     LightSample l = no_light_sample();
     uint light = 0u;
-    if (HAS_LIGHTS && !is_delta && !forward_brings(path)) l = sample_light(path.random, p.position, light);
+    if (HAS_LIGHTS)
+        if (!is_delta && !forward_brings(path)) l = sample_light(path.random, p.position, light);
     vec3 wi = l.direction * s.frame;
     vec3 u = sample_3d(path.random);
     Connection connection = no_connection(wi);
     if (!is_delta) connection = choose_vertex(path.random, p, s);
     SurfaceEvent event = scattering_event(s, wi, connection.wi, SHADOW_RAYS, u);
     // No light where the shading normal and the surface disagree on which side it is.
-    if (HAS_LIGHTS && is_on_one_side(s, l.direction, wi)) shadow = connect_light(path, p, s, l, light, event.pair, mis);
+    if (HAS_LIGHTS)
+        if (is_on_one_side(s, l.direction, wi)) shadow = connect_light(path, p, s, l, light, event.pair, mis);
     bool merges = !is_delta && mis.merging > 0.0 && !mis.along;  // in media where rays merge they have done so
     vertex_shadow = meet_vertices(path, p, s, mis, connection, event.second, merges);
     if (leaves_rest(path, event.next.event) || !follow_sample(path, p, s, event, mis)) return false;
