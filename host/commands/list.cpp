@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "host/commands.h"
 #include "host/error.h"
@@ -11,20 +10,6 @@
 
 namespace etendue {
 namespace {
-
-std::string shown_default(const Parameter& p) {
-    if (p.required) return "required";
-    return p.default_value.is_null() ? "none" : p.default_value.dump();
-}
-
-// The first sentence, on one line. ("al. 2007" ends none.)
-std::string first_sentence(const std::string& summary) {
-    std::string text = summary.substr(0, summary.find("\n\n"));
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    for (size_t end = 0; (end = text.find(". ", end)) != std::string::npos; ++end)
-        if (std::isupper(static_cast<unsigned char>(text[end + 2]))) return text.substr(0, end + 1);
-    return text;
-}
 
 void print_class(const ClassInfo& info) {
     fmt::print("{} {}  (tag {}, {}, record {} of {} bytes)\n", interface_info(info.interface).name, info.name,
@@ -35,7 +20,7 @@ void print_class(const ClassInfo& info) {
     fmt::print("{}\n", summary);
     for (const Parameter& p : info.parameters) {
         if (!p.from_scene) continue;
-        std::string line = fmt::format("  {:<12} {:<26} {}", p.member.type, p.member.name, shown_default(p));
+        std::string line = fmt::format("  {:<12} {:<26} {}", p.member.type, p.member.name, p.shown_default());
         if (const std::string range = p.range(); !range.empty()) line += " in " + range;
         if (!p.unit.empty()) line += " " + p.unit;
         fmt::print("{}\n      {}\n", line, p.text);
