@@ -1,11 +1,12 @@
-// etendue classes, etendue devices: what there is.
+// etendue classes: the registered classes, as text or as a page with examples and pictures.
 #include <fmt/core.h>
 
-#include <algorithm>
-
 #include "host/commands.h"
+#include "host/commands/class_page.h"
+#include "host/commands/showcases.h"
 #include "host/error.h"
-#include "host/gpu/device.h"
+#include "host/image/atomic_file.h"
+#include "host/interrupt.h"
 #include "host/scene/classes.h"
 
 namespace etendue {
@@ -28,44 +29,42 @@ void print_class(const ClassInfo& info) {
     fmt::print("\n");
 }
 
+int write_page(const ClassesOptions& options, const ClassRegistry& registry,
+               const std::vector<const ClassInfo*>& classes) {
+    check_writable(options.html);
+    catch_interrupts();
+    Progress progress;
+    progress.style = progress_style(options.quiet);
+    const auto device = create_device({options.device, false});
+    const std::string page =
+        class_page(registry, classes, render_examples(*device, classes, options, progress));
+    write_atomically(options.html, std::as_bytes(std::span(page)));
+    return int(interrupted() ? ExitCode::interrupted : ExitCode::done);
+}
+
 }  // namespace
 
 int classes_command(const ClassesOptions& options) {
     ShaderSources sources;
     sources.folder = options.shaders;
     ClassRegistry registry(sources);
-    bool found = false;
+    std::vector<const ClassInfo*> chosen;
     for (const InterfaceInfo& interface : all_interfaces()) {
         const auto& classes = registry.classes(interface.interface);
-        if (options.name.empty()) fmt::print("{}{}\n", interface.name, classes.empty() ? ": none" : "");
+        const bool lists = options.name.empty() && options.html.empty();
+        if (lists) fmt::print("{}{}\n", interface.name, classes.empty() ? ": none" : "");
         for (const ClassInfo& listed : classes) {
             if (!options.name.empty() && listed.name != options.name) continue;
             const ClassInfo& info = *registry.find(interface.interface, listed.name);  // compiles it
-            found = true;
-            if (options.name.empty())
-                fmt::print("    {:<19} {}\n", info.name, first_sentence(info.summary));
-            else
-                print_class(info);
+            chosen.push_back(&info);
+            if (lists) fmt::print("    {:<19} {}\n", info.name, first_sentence(info.summary));
         }
     }
-    if (!options.name.empty() && !found)
-        fail_input("classes {}: no such class; `etendue classes` lists them", options.name);
-    return 0;
-}
-
-int devices_command() {
-    const auto devices = list_devices();
-    if (devices.empty())
-        fail_device("no Vulkan device found; install a driver (on Debian: mesa-vulkan-drivers)");
-    const int chosen = default_device(devices);
-    for (const DeviceDescription& d : devices) {
-        fmt::print("{} {}{}\n    {}, {}, Vulkan {}.{}, subgroups of {}, {:.1f} GiB, {:.0f} MiB a binding\n",
-                   d.index, d.name, int(d.index) == chosen ? " (default)" : "", d.type, d.driver,
-                   VK_API_VERSION_MAJOR(d.api_version), VK_API_VERSION_MINOR(d.api_version), d.subgroup_size,
-                   double(d.memory) / (1 << 30), double(d.max_buffer_range) / (1 << 20));
-        if (!d.missing.empty()) fmt::print("    not usable: lacks {}\n", fmt::join(d.missing, ", "));
-    }
-    return 0;
+    if (chosen.empty()) fail_input("classes {}: no such class; `etendue classes` lists them", options.name);
+    if (!options.html.empty()) return write_page(options, registry, chosen);
+    if (!options.name.empty())
+        for (const ClassInfo* info : chosen) print_class(*info);
+    return int(ExitCode::done);
 }
 
 }  // namespace etendue
