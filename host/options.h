@@ -85,8 +85,12 @@ struct RaysOptions : SceneChoice {
 };
 
 struct ClassesOptions {
-    std::string name;  // empty = all
-    std::filesystem::path shaders;
+    std::string name;               // empty = all
+    std::filesystem::path html;     // page to write instead; empty = none
+    std::filesystem::path shaders;  // empty = those in the binary
+    std::string device;             // of the page's pictures, as for SceneChoice
+    uint32_t passes = 128;          // of each of them
+    bool quiet = false;
 };
 
 }  // namespace etendue

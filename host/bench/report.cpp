@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/html.h"
 #include "host/image/atomic_file.h"
 
 namespace etendue {
@@ -40,35 +41,6 @@ std::string shown_time(const std::vector<BenchLevel>& levels, double target) {
 // Columns of UTF-8 text whose characters are one column wide each.
 size_t columns_of(const std::string& text) {
     return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-std::string escaped(const std::string& text) {
-    std::string html;
-    for (char c : text) {
-        if (c == '&')
-            html += "&amp;";
-        else if (c == '<')
-            html += "&lt;";
-        else if (c == '>')
-            html += "&gt;";
-        else if (c == '"')
-            html += "&quot;";
-        else
-            html += c;
-    }
-    return html;
-}
-
-std::string base64(std::span<const std::byte> bytes) {  // RFC 4648
-    const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (size_t i = 0; i < bytes.size(); i += 3) {
-        uint32_t group = 0;
-        const size_t count = std::min<size_t>(3, bytes.size() - i);
-        for (size_t k = 0; k < count; ++k) group |= uint32_t(bytes[i + k]) << (16 - 8 * k);
-        for (size_t k = 0; k < 4; ++k) text += k <= count ? digits[group >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
 }
 
 std::string html_table(const Table& table) {

@@ -191,12 +191,26 @@ CLI::App* add_inspect(CLI::App& app, InspectOptions& options) {
     return inspect;
 }
 
-CLI::App* add_classes(CLI::App& app, ClassesOptions& options) {
+CLI::App* add_classes(CLI::App& app, ClassesOptions& options, std::optional<std::string>& passes) {
     CLI::App* classes =
         app.add_subcommand("classes", "Registered classes, their parameters, units, defaults and ranges");
     classes->add_option("NAME", options.name, "Only this class")->option_text(" ");
+    auto* html = classes->add_option("--html", options.html,
+                                     "Write a page instead, with examples and pictures of them");
+    html->option_text("FILE.html");
+    classes->add_option("--passes", passes, "Of each picture (default: 128)")->option_text("N")->needs(html);
+    classes->add_option("--device", options.device, "As for render, for the pictures")
+        ->option_text("NAME|INDEX")
+        ->needs(html);
     classes->add_option("--shaders", options.shaders, "As for render")->option_text("DIR");
+    classes->add_flag("-q,--quiet", options.quiet, "No progress and no warnings")->needs(html);
     return classes;
+}
+
+void finish_classes(ClassesOptions& options, const std::optional<std::string>& passes) {
+    if (passes) options.passes = uint32_t(parse_count(*passes, "--passes", 1, 1 << 20));
+    if (!options.html.empty() && options.html.extension() != ".html")
+        fail_input("--html {}: a page; its name must end in .html", options.html.string());
 }
 
 // CLI11 calls a missing value by its type's name.
@@ -232,13 +246,14 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     RaysArguments rays_arguments;
     InspectOptions inspect_options;
     ClassesOptions classes_options;
+    std::optional<std::string> classes_passes;
     CLI::App* render = add_render(app, render_options, render_arguments);
     CLI::App* compare = add_compare(app, compare_options, max_relmse);
     CLI::App* bench = add_bench(app, bench_options, bench_arguments);
     CLI::App* view = add_view(app, view_options, view_arguments);
     CLI::App* rays = add_rays(app, rays_options, rays_arguments);
     CLI::App* inspect = add_inspect(app, inspect_options);
-    CLI::App* classes = add_classes(app, classes_options);
+    CLI::App* classes = add_classes(app, classes_options, classes_passes);
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
 
@@ -289,7 +304,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         return view_options;
     }
     if (inspect->parsed()) return inspect_options;
-    if (classes->parsed()) return classes_options;
+    if (classes->parsed()) {
+        finish_classes(classes_options, classes_passes);
+        return classes_options;
+    }
     if (devices->parsed()) return DevicesOptions{};
     fail_input("no command given (see etendue --help)");
 }

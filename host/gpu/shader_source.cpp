@@ -50,7 +50,7 @@ std::optional<uint64_t> ShaderSources::whole_hash() const {
     static const uint64_t embedded = [] {
         uint64_t hash = hash_text("");
         for (const EmbeddedFile& file : embedded_shaders())
-            hash = hash_text(file.text, hash_text(file.name, hash));
+            hash = hash_text(file.bytes, hash_text(file.name, hash));
         return hash;
     }();
     if (!folder.empty() && !kept) return std::nullopt;
@@ -65,7 +65,7 @@ std::optional<std::string> ShaderSources::find(const std::string& name) const {
         if (auto text = read_text(folder / name)) return text;
     }
     for (const EmbeddedFile& file : embedded_shaders())
-        if (std::string_view(file.name) == name) return file.text;
+        if (file.name == name) return std::string(file.bytes);
     return std::nullopt;
 }
 

@@ -30,7 +30,7 @@ void append_bytes(void* context, void* data, int size) {
 
 }  // namespace
 
-void write_png(const std::filesystem::path& path, const Image& image, float exposure) {
+std::vector<std::byte> encode_png(const Image& image, float exposure) {
     auto channels = picture_channels(image);
     float scale = std::exp2(exposure);
     std::vector<uint8_t> pixels(pixel_count(image) * 3);
@@ -47,7 +47,11 @@ void write_png(const std::filesystem::path& path, const Image& image, float expo
     if (!stbi_write_png_to_func(append_bytes, &bytes, int(image.width), int(image.height), 3, pixels.data(),
                                 int(image.width) * 3))
         throw std::bad_alloc();
-    write_atomically(path, bytes);
+    return bytes;
+}
+
+void write_png(const std::filesystem::path& path, const Image& image, float exposure) {
+    write_atomically(path, encode_png(image, exposure));
 }
 
 }  // namespace etendue

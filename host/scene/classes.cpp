@@ -32,12 +32,32 @@ std::string trim(std::string text) {
     return text;
 }
 
-// The comment lines at the head of a class file, without the slashes.
-std::string head_comment(const std::string& text) {
+// The comment lines at the head of a file, without the slashes, up to a line "Example:" and behind it.
+struct HeadComment {
+    std::string summary, example;
+};
+
+HeadComment head_comment(const std::string& text) {
+    const auto without_indent = [](const std::string& line, size_t most) {
+        return line.substr(std::min({line.find_first_not_of(' ', 2), most, line.size()})) + "\n";
+    };
+    HeadComment result;
     std::istringstream lines(text);
-    std::string line, result;
-    while (std::getline(lines, line) && line.rfind("//", 0) == 0) result += trim(line.substr(2)) + "\n";
-    return trim(result);
+    bool in_example = false;
+    for (std::string line; std::getline(lines, line) && line.rfind("//", 0) == 0;) {
+        if (trim(line.substr(2)) == "Example:")
+            in_example = true;
+        else if (in_example)
+            result.example += without_indent(line, 7);  // "//     "
+        else
+            result.summary += without_indent(line, 3);
+    }
+    return {trim(result.summary), trim(result.example)};
+}
+
+void read_head_comment(const std::string& text, ClassInfo& info) {
+    HeadComment head = head_comment(text);
+    info.summary = std::move(head.summary), info.example = std::move(head.example);
 }
 
 double range_end(const std::string& text) {
@@ -133,6 +153,11 @@ std::string Parameter::range() const {
     return fmt::format("{}{}, {}{}", lo_open ? '(' : '[', lo, hi, hi_open ? ')' : ']');
 }
 
+std::string Parameter::shown_default() const {
+    if (required) return "required";
+    return default_value.is_null() ? "none" : default_value.dump();
+}
+
 ClassRegistry::ClassRegistry(ShaderSources sources, std::filesystem::path cache_folder)
     : sources_(std::move(sources)), cache_folder_(std::move(cache_folder)) {
     if (!sources_.folder.empty() && !std::filesystem::exists(sources_.folder / "registry.h"))
@@ -155,7 +180,7 @@ ClassRegistry::ClassRegistry(ShaderSources sources, std::filesystem::path cache_
             info.record = (*i)[2];
             info.name = (*i)[3];
             info.file = fmt::format("{}/{}.glsl", interface.folder, info.name);
-            if (auto source = sources_.find(info.file)) info.summary = head_comment(*source);
+            if (auto source = sources_.find(info.file)) read_head_comment(*source, info);
             classes.push_back(std::move(info));
         }
     }
@@ -180,7 +205,7 @@ void ClassRegistry::add_class_file(Interface interface, const std::filesystem::p
     const std::string text = (std::ostringstream() << stream.rdbuf()).str();
     if (!std::regex_search(text, std::regex(fmt::format(R"(struct\s+{}\b)", info.record))))
         fail_input("{}: a class file declares its record; struct {} is missing", info.file, info.record);
-    info.summary = head_comment(text);
+    read_head_comment(text, info);
     sources_.generated[info.file] = text;
     classes.push_back(std::move(info));
 }
@@ -196,6 +221,10 @@ const ClassInfo* ClassRegistry::find(Interface interface, const std::string& nam
             return &info;
         }
     return nullptr;
+}
+
+std::string ClassRegistry::summary(Interface interface) const {
+    return first_sentence(head_comment(sources_.get(interface_info(interface).contract)).summary);
 }
 
 std::vector<MemberLayout> ClassRegistry::reflect_struct(const std::string& file, const std::string& name,
@@ -233,6 +262,14 @@ void ClassRegistry::reflect(ClassInfo& info) const {
             parse_annotation(found->second, parameter, info.file);
         info.parameters.push_back(std::move(parameter));
     }
+}
+
+std::string first_sentence(const std::string& comment) {
+    std::string text = comment.substr(0, comment.find("\n\n"));
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    for (size_t end = 0; (end = text.find(". ", end)) != std::string::npos; ++end)
+        if (std::isupper(static_cast<unsigned char>(text[end + 2]))) return text.substr(0, end + 1);
+    return text;
 }
 
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,

@@ -5,7 +5,8 @@
 //
 //     float alpha;  //: 0 in [0, 1] UNIT. Description.
 //
-// Members without `//:` are filled by the host.
+// Members without `//:` are filled by the host. The comment at the head of the file says what the class is;
+// behind a line "Example:" it may have one, part of a scene file (scenes/FORMAT.md), indented.
 #pragma once
 #include <array>
 #include <limits>
@@ -42,14 +43,16 @@ struct Parameter {
     std::string unit, text;
 
     bool in_range(double value) const;
-    std::string range() const;  // "[0, 1]"; empty where there is none
+    std::string range() const;          // "[0, 1]"; empty where there is none
+    std::string shown_default() const;  // "required", "none" or a JSON value
 };
 
 struct ClassInfo {
     Interface interface = Interface::surface;
     uint32_t tag = 0;
     std::string record, name, file;  // struct, class, GLSL file
-    std::string summary;             // the comment at the head of the file
+    std::string summary;             // the comment at the head of the file, without the example
+    std::string example;             // as it stands there, JSON; may be empty
     // Filled by reflection, at first use:
     uint32_t stride = 0;  // bytes of a record
     std::vector<Parameter> parameters;
@@ -71,6 +74,9 @@ class ClassRegistry {
     // Reflected; null where there is no such class.
     const ClassInfo* find(Interface interface, const std::string& name);
 
+    // The first sentence of the interface's contract.
+    std::string summary(Interface interface) const;
+
     // Layout of any struct that shader file `file` declares.
     std::vector<MemberLayout> reflect_struct(const std::string& file, const std::string& name,
                                              uint32_t& stride) const;
@@ -83,6 +89,9 @@ class ClassRegistry {
     std::filesystem::path cache_folder_;
     std::map<Interface, std::vector<ClassInfo>> classes_;
 };
+
+// The first sentence of a comment, on one line. ("al. 2007" ends none.)
+std::string first_sentence(const std::string& comment);
 
 // Text of "generated/NAME_classes.glsl" for the given classes: the dispatch table, the class files, their
 // buffers, and for each class a function NAME_record(index). `constants` gives, by class, what is the same in

@@ -6,7 +6,7 @@ namespace etendue {
 namespace {
 
 const nlohmann::json& library() {
-    static const nlohmann::json json = nlohmann::json::parse(embedded_spectra().front().text);
+    static const nlohmann::json json = nlohmann::json::parse(embedded_spectra().front().bytes);
     return json;
 }
 

@@ -1,5 +1,9 @@
 // The open side of a cylinder around the z axis, centred at the origin, seen from outside. u runs around,
 // v from the lower to the upper rim.
+//
+// Example:
+//     {"nodes": [{"name": "cylinder", "translation": [0, 0.4, 0], "rotation": [0.70711, 0, 0, -0.70711], "extensions": {"ETD_optics": {
+//         "geometry": {"class": "cylinder", "radius": 0.3, "height": 0.8, "material": 1}}}}]}
 #include "lib/accurate_math.glsl"
 #include "lib/warps.glsl"
 

@@ -1,4 +1,8 @@
 // A disk in the xy plane around the origin, facing +z. u runs around, v from the centre to the rim.
+//
+// Example:
+//     {"nodes": [{"name": "disk", "translation": [0, 0.45, 0], "rotation": [-0.2588, 0, 0, 0.9659], "extensions": {"ETD_optics": {
+//         "geometry": {"class": "disk", "radius": 0.45, "material": 1}}}}]}
 #include "lib/accurate_math.glsl"
 #include "lib/warps.glsl"
 

@@ -1,4 +1,8 @@
 // A rectangle in the xy plane around the origin, facing +z. Seen from there u runs to the right (+x), v down (-y).
+//
+// Example:
+//     {"nodes": [{"name": "rectangle", "translation": [0, 0.4, 0], "rotation": [-0.2588, 0, 0, 0.9659], "extensions": {"ETD_optics": {
+//         "geometry": {"class": "rectangle", "size": [1.1, 0.7], "material": 1}}}}]}
 
 struct Rectangle {
     vec2 size;  //: required in (0, inf) m. Width along x and height along y.

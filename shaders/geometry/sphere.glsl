@@ -1,4 +1,8 @@
 // A sphere centred at the origin, seen from outside. Poles on the z axis; u runs around it, v from +z to -z.
+//
+// Example:
+//     {"nodes": [{"name": "sphere", "translation": [0, 0.45, 0], "extensions": {"ETD_optics": {
+//         "geometry": {"class": "sphere", "radius": 0.45, "material": 1}}}}]}
 #include "lib/accurate_math.glsl"
 #include "lib/frames.glsl"
 

@@ -2,6 +2,13 @@
 // hierarchy's leaves point into: entries of shapes and instances keep other things in the place of the vertices
 // (lib/bvh.glsl). Vertices are in world space, or in the mesh's frame under an instance; counter-clockwise as seen
 // from the side of the normal.
+//
+// Example:
+//     {"nodes": [{"name": "triangle", "mesh": 0}],
+//      "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 1}]}],
+//      "accessors": [{"bufferView": 0, "count": 3, "type": "VEC3", "componentType": 5126, "min": [-0.5, 0.02, -0.25], "max": [0.55, 0.95, 0.15]}],
+//      "bufferViews": [{"buffer": 0, "byteLength": 36}],
+//      "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAvwrXozyamRk+zcwMPwrXozzNzMw9zcxMPTMzcz8AAIC+"}]}
 
 struct Triangle {
     vec3 v0;          // m

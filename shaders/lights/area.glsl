@@ -1,5 +1,11 @@
 // A surface that emits: one record for every emissive triangle or shape. Filled by the host from the scene's
 // materials. The emission itself, with its texture and sides, belongs to the material.
+//
+// Example:
+//     {"materials": [{"name": "lamp", "extensions": {"ETD_optics": {
+//         "surface": {"class": "absorber"}, "emission": {"luminance": 12}}}}],
+//      "nodes": [{"name": "lamp", "translation": [-0.1, 1.75, -0.4], "rotation": [0.5, 0, 0, 0.866], "extensions": {"ETD_optics": {
+//         "geometry": {"class": "rectangle", "size": [0.8, 0.3], "material": 1}}}}]}
 #include "lib/materials.glsl"
 #include "lib/primitives.glsl"
 

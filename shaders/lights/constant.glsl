@@ -1,4 +1,8 @@
 // The same radiance from every direction, from infinitely far away.
+//
+// Example:
+//     {"extensions": {"ETD_optics": {
+//         "environment": {"class": "constant", "radiance": 0.8}}}}
 struct ConstantEnvironment {
     SpectrumRef radiance;  //: 1 in [0, inf) cd/m². Radiance.
 };

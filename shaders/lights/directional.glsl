@@ -1,4 +1,8 @@
 // Parallel light along -z of its node, from infinitely far away (glTF KHR_lights_punctual).
+//
+// Example:
+//     {"nodes": [{"name": "sun", "rotation": [-0.37, -0.22, -0.09, 0.9], "extensions": {"ETD_optics": {
+//         "light": {"class": "directional", "color": [1, 0.93, 0.8], "intensity": 4}}}}]}
 struct DirectionalLight {
     Placement placement;
     SpectrumRef color;  //: 1 in [0, inf). Multiplies the intensity.

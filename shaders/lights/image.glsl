@@ -8,6 +8,10 @@
 // tables (Walker 1977, Vose 1991), one for the row and one for the column, then a point of the cell by
 // inverting its bilinear luminance. With cells of equal solid angle per unit of the two coordinates the pdf
 // is luminance / (its integral over the sphere).
+//
+// Example:
+//     {"extensions": {"ETD_optics": {
+//         "environment": {"class": "image", "file": "sky.hdr", "rotation": -1}}}}
 
 // An environment image on the device. Layout of environment_texels from `first`, with H = height, W = width:
 //   (H + 2) rows of W texels, the image with its first and last row repeated. rgb: radiance. w: alias entry of

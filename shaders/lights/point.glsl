@@ -1,5 +1,9 @@
 // A point that sends the same luminous intensity in every direction (glTF KHR_lights_punctual).
 // Of the node's transform only the position counts: scale does not change the intensity.
+//
+// Example:
+//     {"nodes": [{"name": "bulb", "translation": [-0.5, 1.3, 0.4], "extensions": {"ETD_optics": {
+//         "light": {"class": "point", "intensity": 4}}}}]}
 struct PointLight {
     Placement placement;
     SpectrumRef color;  //: 1 in [0, inf). Multiplies the intensity.

@@ -2,6 +2,10 @@
 // and the outer angle the intensity falls off as that specification recommends: the square of ((cos - cos
 // outer) / (cos inner - cos outer)). Of the node's transform only position and direction count: scale does
 // not change the intensity.
+//
+// Example:
+//     {"nodes": [{"name": "spotlight", "translation": [0, 2, 2.2], "rotation": [-0.3, 0, 0, 0.954], "extensions": {"ETD_optics": {
+//         "light": {"class": "spot", "intensity": 16, "inner_cone_angle": 0.25, "outer_cone_angle": 0.35}}}}]}
 struct SpotLight {
     Placement placement;
     SpectrumRef color;       //: 1 in [0, inf). Multiplies the intensity.

@@ -1,5 +1,11 @@
 // Maxwell's fish-eye: n = ior / (1 + (r / radius)²), r being the distance from the centre. All rays are circles, and those from
 // a point meet again at its image, in the same time (Born & Wolf, section 4.2.2). It absorbs along the bent path.
+//
+// Example:
+//     {"materials": [{"name": "fish-eye", "extensions": {"ETD_optics": {
+//         "surface": {"class": "dielectric"}, "inside": "fish-eye"}}}],
+//      "extensions": {"ETD_optics": {"media": [
+//         {"name": "fish-eye", "class": "fish_eye", "ior": 2, "center": [0, 0.5, 0], "radius": 0.5, "tolerance": 1e-3}]}}}
 #include "lib/free_path.glsl"
 #include "lib/plain_media.glsl"
 #include "lib/records.glsl"

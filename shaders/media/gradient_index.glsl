@@ -3,6 +3,13 @@
 //   n² = ior² (1 + radial · (r², r⁴, r⁶) + axial · (z, z², z³))
 // A rod of the focusing constant g has radial [-g², …] (Gomez-Reino, Perez & Bao 2002, "Gradient-Index Optics", section 1.2);
 // Luneburg's lens of radius a has ior √2, radial [-1 / (2 a²), …] and axial [0, -1 / (2 a²), 0]. It absorbs along the bent path.
+//
+// Example:
+//     {"materials": [{"name": "Luneburg's lens", "extensions": {"ETD_optics": {
+//         "surface": {"class": "dielectric"}, "inside": "Luneburg's lens"}}}],
+//      "extensions": {"ETD_optics": {"media": [
+//         {"name": "Luneburg's lens", "class": "gradient_index", "ior": 1.41421356, "center": [0, 0.5, 0],
+//          "radial": [-2, 0, 0], "axial": [0, -2, 0], "tolerance": 1e-3}]}}}
 #include "lib/free_path.glsl"
 #include "lib/plain_media.glsl"
 #include "lib/records.glsl"

@@ -6,6 +6,13 @@
 // Volumes", section 5, with probabilities by what the lanes still carry): what the lanes carry together never grows. Shadow
 // rays are attenuated by residual ratio tracking (Novák et al. 2014, "Residual Ratio Tracking for Estimating Attenuation in
 // Participating Media", section 3.2), with the least density of a brick as the control.
+//
+// Example:
+//     {"materials": [{"name": "cloud", "extensions": {"ETD_optics": {
+//         "surface": {"class": "boundary"}, "inside": "cloud"}}}],
+//      "extensions": {"ETD_optics": {"media": [
+//         {"name": "cloud", "class": "grid", "density": 0.0039, "scattering": 12, "phase": {"class": "henyey_greenstein", "g": 0.5},
+//          "file": {"name": "cloud.nrrd", "translation": [0, 0.27, 0], "scale": [0.0027, 0.0027, 0.0027]}}]}}}
 #include "lib/density_grid.glsl"
 #include "lib/free_path.glsl"
 #include "lib/plain_media.glsl"

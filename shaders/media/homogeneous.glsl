@@ -1,4 +1,10 @@
 // A medium that is the same everywhere: refractive index, absorption and scattering (Beer-Lambert).
+//
+// Example:
+//     {"materials": [{"name": "green glass", "extensions": {"ETD_optics": {
+//         "surface": {"class": "dielectric"}, "inside": "green glass"}}}],
+//      "extensions": {"ETD_optics": {"media": [
+//         {"name": "green glass", "class": "homogeneous", "ior": 1.52, "absorption": [4.5, 0.5, 2.6]}]}}}
 #include "lib/free_path.glsl"
 #include "lib/plain_media.glsl"
 

@@ -1,4 +1,8 @@
 // One lobe, forward or backward (Henyey & Greenstein 1941): (1 - g²) / (4 pi (1 + g² - 2 g cos)^(3/2)).
+//
+// Example:
+//     {"extensions": {"ETD_optics": {"media": [
+//         {"name": "fog", "class": "homogeneous", "scattering": 0.4, "phase": {"class": "henyey_greenstein", "g": 0.6}}]}}}
 struct HenyeyGreenstein {
     float g;  //: 0 in [-0.999, 0.999]. Mean cosine of the angle by which light is turned: above 0 it goes on rather than back.
 };

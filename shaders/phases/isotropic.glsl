@@ -1,4 +1,8 @@
 // Scatters equally into all directions.
+//
+// Example:
+//     {"extensions": {"ETD_optics": {"media": [
+//         {"name": "fog", "class": "homogeneous", "scattering": 0.4, "phase": {"class": "isotropic"}}]}}}
 struct Isotropic {
     uint unused;  // a record holds at least one member
 };

@@ -1,4 +1,8 @@
 // Particles much smaller than the wavelength, unpolarized (Rayleigh 1871): 3 (1 + cos²) / (16 pi).
+//
+// Example:
+//     {"extensions": {"ETD_optics": {"media": [
+//         {"name": "fog", "class": "homogeneous", "scattering": 0.4, "phase": {"class": "rayleigh"}}]}}}
 struct Rayleigh {
     uint unused;  // a record holds at least one member
 };

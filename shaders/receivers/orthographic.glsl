@@ -1,5 +1,9 @@
 // A camera of parallel rays as glTF defines it: looks along -z of its node, +y up. The image's height is 2 ymag; its
 // width follows the image's aspect.
+//
+// Example:
+//     {"nodes": [{"name": "camera", "translation": [2.4, 2.7, 3], "rotation": [-0.26, 0.255, 0.072, 0.929], "extensions": {"ETD_optics": {
+//         "receiver": {"class": "orthographic", "ymag": 1.6}}}}]}
 struct OrthographicCamera {
     Placement placement;
     float ymag;  //: 1 in (0, inf) m. Half the height of the view.

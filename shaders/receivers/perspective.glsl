@@ -1,4 +1,8 @@
 // A pinhole camera as glTF defines it: looks along -z of its node, +y up.
+//
+// Example:
+//     {"nodes": [{"name": "camera", "translation": [0.2, 1.1, 4], "extensions": {"ETD_optics": {
+//         "receiver": {"class": "perspective", "yfov": 0.8}}}}]}
 struct PerspectiveCamera {
     Placement placement;
     float yfov;  //: 0.7853981634 in (0, 3.1415926) rad. Vertical field of view.

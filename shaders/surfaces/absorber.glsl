@@ -1,4 +1,8 @@
 // Absorbs all light that reaches it, on both sides.
+//
+// Example:
+//     {"materials": [{"name": "black hole", "extensions": {"ETD_optics": {
+//         "surface": {"class": "absorber"}}}}]}
 struct Absorber {
     uint unused;  // a record holds at least one member
 };

@@ -1,4 +1,10 @@
 // Separates two media and nothing else: light passes straight on, whatever the media's refractive indices.
+//
+// Example:
+//     {"materials": [{"name": "border of the mist", "extensions": {"ETD_optics": {
+//         "surface": {"class": "boundary"}, "inside": "mist"}}}],
+//      "extensions": {"ETD_optics": {"media": [
+//         {"name": "mist", "class": "homogeneous", "scattering": [1.5, 2, 3]}]}}}
 struct Boundary {
     uint unused;  // a record holds at least one member
 };

@@ -5,6 +5,10 @@
 // mirror. One reflection at a facet is modelled, so rough surfaces lose what is reflected more often;
 // `multiscatter` gives it back as a broad lobe after Kulla & Conty 2017, reciprocal and lossless for
 // reflectance 1.
+//
+// Example:
+//     {"materials": [{"name": "satin gold", "extensions": {"ETD_optics": {
+//         "surface": {"class": "conductor", "eta": {"name": "Au eta"}, "k": {"name": "Au k"}, "alpha": 0.12}}}}]}
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/microfacet_energy.glsl"

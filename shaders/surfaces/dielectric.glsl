@@ -4,6 +4,12 @@
 //
 // One event at a facet is modelled, so rough surfaces lose what meets a facet more often; `multiscatter`
 // gives it back as broad lobes on both sides after Kulla & Conty 2017, which are reciprocal and lossless.
+//
+// Example:
+//     {"materials": [{"name": "glass", "extensions": {"ETD_optics": {
+//         "surface": {"class": "dielectric"}, "inside": "glass"}}}],
+//      "extensions": {"ETD_optics": {"media": [
+//         {"name": "glass", "class": "homogeneous", "ior": 1.5}]}}}
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
 #include "lib/microfacet_energy.glsl"

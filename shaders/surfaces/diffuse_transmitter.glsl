@@ -2,6 +2,12 @@
 //
 // Where the media on its sides differ, what comes from the denser side leaves with 1 / n² of the transmittance, and the
 // rest is reflected: radiance over squared index is kept, both ways (Veach 1997, section 5.2).
+//
+// Example:
+//     {"materials": [{"name": "paper lantern", "extensions": {"ETD_optics": {
+//         "surface": {"class": "diffuse_transmitter", "reflectance": [0.55, 0.5, 0.4], "transmittance": [0.4, 0.3, 0.15]}}}}],
+//      "nodes": [{"name": "bulb", "translation": [0, 0.45, 0], "extensions": {"ETD_optics": {
+//         "light": {"class": "point", "intensity": 0.2}}}}]}
 struct DiffuseTransmitter {
     SpectrumRef reflectance;           //: 0.5 in [0, 1]. Reflected part. With transmittance at most 1, or both are scaled.
     SpectrumRef transmittance;         //: 0.5 in [0, 1]. Part of the flux that goes through, from the less dense side.

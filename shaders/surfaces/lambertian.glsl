@@ -1,4 +1,8 @@
 // A perfectly diffuse reflector: the same radiance in every direction (Lambert 1760). Both sides reflect.
+//
+// Example:
+//     {"materials": [{"name": "red clay", "extensions": {"ETD_optics": {
+//         "surface": {"class": "lambertian", "reflectance": [0.6, 0.11, 0.07]}}}}]}
 struct Lambertian {
     SpectrumRef reflectance;         //: 0.5 in [0, 1]. Reflected part of the incident flux.
     TextureRef reflectance_texture;  //: none. Multiplies the reflectance.

@@ -6,6 +6,10 @@
 // which is not quite reciprocal means the same for forward and for backward rays; its slices also say where samples go. Where
 // the media on the sides differ, what is transmitted is what the table says from the less dense side; the denser side
 // loses what refraction turns back.
+//
+// Example:
+//     {"materials": [{"name": "lacquer", "extensions": {"ETD_optics": {
+//         "surface": {"class": "measured", "file": "paint.json"}}}}]}
 #include "lib/accurate_math.glsl"
 #ifndef MEASURED_SLICES
 #define MEASURED_SLICES 4  // around a fixed direction: two, or four where its azimuth counts, too

@@ -17,6 +17,12 @@
 //   normal incidence in air; so it does under a coat, too.
 // - Where media differ, diffuse transmission keeps radiance over squared index: of what comes from the denser side
 //   only 1 / n² passes, and the rest is reflected.
+//
+// Example:
+//     {"materials": [{"name": "blue lacquer", "pbrMetallicRoughness": {
+//         "baseColorFactor": [0.02, 0.12, 0.5, 1], "metallicFactor": 0.4, "roughnessFactor": 0.5},
+//         "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.05}}}],
+//      "extensionsUsed": ["KHR_materials_clearcoat"]}
 struct Principled {
     vec4 base_color;                        //: [1, 1, 1, 1]. Linear color, alpha; vertex colors multiply it.
     TextureRef base_color_texture;          //: none. Multiplies base_color.

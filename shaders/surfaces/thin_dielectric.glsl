@@ -1,6 +1,10 @@
 // A pane: two smooth parallel interfaces, all reflections between them summed. The pane itself has no
 // thickness, so what it lets through goes straight on: R' = R + T² R + T² R³ + … = 2 R / (1 + R),
 // T' = 1 - R'. Lossless.
+//
+// Example:
+//     {"materials": [{"name": "glass bubble", "extensions": {"ETD_optics": {
+//         "surface": {"class": "thin_dielectric", "ior": 1.5}}}}]}
 #include "lib/fresnel.glsl"
 
 struct ThinDielectric {

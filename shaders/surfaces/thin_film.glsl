@@ -5,6 +5,10 @@
 // Scenes may name a "base" instead, a surface: {"class": "conductor" | "dielectric" | "principled", ...}; the last becomes
 // principled with iridescence, so that a film lies on all that glTF describes. Nothing is absorbed in the film. Between
 // media that match, or so nearly that refraction is not resolved, facets count as smooth: a soap film.
+//
+// Example:
+//     {"materials": [{"name": "tempered steel", "extensions": {"ETD_optics": {
+//         "surface": {"class": "thin_film", "ior": 2.4, "thickness": 55, "eta": [2.9, 2.9, 2.6], "k": [3.1, 3.3, 3.3], "alpha": 0.05}}}}]}
 #include "lib/fresnel.glsl"
 #include "lib/microfacet.glsl"
 #include "features/thin_film_spectra.glsl"

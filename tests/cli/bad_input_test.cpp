@@ -159,6 +159,11 @@ TEST_CASE("bad options and files beside the scene are one line, and nothing is w
         {"passes and a time", with({"--time", "3"}), 2, {"--time"}},
         {"size without width", with({"--size", "x4"}), 2, {"--size"}},
         {"no such class", {"classes", "velvet"}, 2, {"velvet"}},
+        {"no such class for a page", {"classes", "velvet", "--html", "p.html"}, 2, {"velvet"}},
+        {"a page that is none", {"classes", "--html", "out.exr"}, 2, {"out.exr", ".html"}},
+        {"a page that cannot be written", {"classes", "--html", "no/folder/p.html"}, 2, {"no/folder"}},
+        {"a page of no passes", {"classes", "--html", "p.html", "--passes", "0"}, 2, {"--passes"}},
+        {"passes without a page", {"classes", "--passes", "3"}, 2, {"--passes", "--html"}},
         {"image to compare missing", {"compare", "a.exr", "b.exr"}, 2, {"a.exr"}},
         {"image to compare that is none", {"compare", "out.exr", "out.exr"}, 2, {"out.exr"}},
     });
@@ -167,6 +172,10 @@ TEST_CASE("bad options and files beside the scene are one line, and nothing is w
 TEST_CASE("without a usable device the exit code is 3, and nothing is written") {
     check({
         {"no such device", with({"--device", "no such card"}), 3, {"no such card"}},
+        {"no such device for a page",
+         {"classes", "--html", "p.html", "--device", "no such card"},
+         3,
+         {"no such card"}},
         {"no Vulkan device",
          render,
          3,

@@ -37,6 +37,8 @@ def facing(position, direction, up=(0, 1, 0)):
 
 
 class Gltf:
+    """`expected`: what the scene must show, in words. Without words the file lists no scenes, and all its nodes are shown."""
+
     def __init__(self, name, expected):
         self.name, self.expected = name, expected
         self.nodes, self.meshes, self.materials, self.cameras = [], [], [], []
@@ -207,14 +209,7 @@ class Gltf:
             "asset": {"version": "2.0", "generator": "tools/scenes/make.py"},
             "extensionsUsed": sorted(self.extensions),
             "extensions": extensions,
-            "scene": 0,
-            "scenes": [
-                {
-                    "name": self.name,
-                    "extras": {"expected": self.expected},
-                    "nodes": list(range(len(self.nodes))),
-                }
-            ],
+            **(self._scenes() if self.expected else {}),
             "nodes": self.nodes,
             "cameras": self.cameras,
             "materials": self.materials,
@@ -229,6 +224,10 @@ class Gltf:
         path.write_text(_text(_rounded(root)), encoding="utf-8")
         for name, content in self.files.items():
             (path.parent / name).write_bytes(content)
+
+    def _scenes(self):
+        scene = {"name": self.name, "extras": {"expected": self.expected}, "nodes": list(range(len(self.nodes)))}
+        return {"scene": 0, "scenes": [scene]}
 
     def _material(self, material):
         self.materials.append(material)

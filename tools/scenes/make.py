@@ -2,7 +2,7 @@
 """Writes the example scenes: tools/scenes/make.py [FOLDER], scenes/ by default.
 
 A scene is a function in a file beside this one that returns a Gltf with its expected value in words; those words go into
-the scene's file (scenes[0].extras.expected) and into the folder's README.md.
+the scene's file (scenes[0].extras.expected) and into the folder's README.md. The scenes that `etendue classes --html` puts its examples into go to FOLDER/manual.
 """
 
 import sys
@@ -15,6 +15,7 @@ from example import example
 from furnaces import furnace_closed, furnace_rough, furnace_smooth, spheres
 from grin import grin
 from lights import lamps, many_lights
+from manual import write_showcases
 from scattering import cloud, glass_in_fog
 from surfaces import films, finishes, materials
 from water import iced_water, pool
@@ -49,6 +50,12 @@ Written by `tools/scenes/make.py`; the files beside it say how each is built; ch
 """
 
 
+MANUAL = """
+[manual/](manual) has the scenes, one an interface, into which `etendue classes --html` puts the examples that stand in the class
+files, and the files that these name.
+"""
+
+
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parents[2] / "scenes"
     folder.mkdir(parents=True, exist_ok=True)
@@ -64,7 +71,8 @@ def main():
             break_on_hyphens=False,
         )
         lines.append(text)
-    (folder / "README.md").write_text(README + "\n".join(lines) + "\n", encoding="utf-8")
+    write_showcases(folder / "manual")
+    (folder / "README.md").write_text(README + "\n".join(lines) + "\n" + MANUAL, encoding="utf-8")
 
 
 if __name__ == "__main__":
