@@ -124,6 +124,8 @@ class Rewriter {
     }
 
     void rewrite(spv::Op op, SpirvWords& words) {
+        // Variables of the function stand before all else in its first block.
+        if (at_start_ && op != spv::OpVariable) load_addresses(), at_start_ = false;
         switch (op) {
             case spv::OpMemoryModel:
                 words[1] = spv::AddressingModelPhysicalStorageBuffer64;
@@ -176,8 +178,6 @@ class Rewriter {
             default:
                 break;
         }
-        // Variables of the function stand before all else in its first block.
-        if (at_start_ && op != spv::OpVariable) load_addresses(), at_start_ = false;
         out_.instructions.push_back(words);
         if (op == spv::OpLabel && in_entry_) at_start_ = true, in_entry_ = false;
     }
