@@ -23,7 +23,7 @@ if [ -d "$folder" ] && [ ! -e "$folder/images.txt" ] && [ -n "$(ls -A "$folder")
     exit 2
 fi
 rm -rf "$folder"
-mkdir -p "$folder"/{bin,lib/common,scenes,reference,expected}
+mkdir -p "$folder"/{bin,lib/common,scenes,reference,expected,tests/kernels}
 folder=$(cd "$folder" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -45,6 +45,16 @@ done
 # The tests want the validation layer, whose 22 MB shrink to 5.
 layer=libVkLayer_khronos_validation.so
 gzip -9c "$(ldconfig -p | awk -v name=$layer '$1 == name { print $NF; exit }')" >"$folder/lib/$layer.gz"
+
+# What the tests read of the checkout, and their list, the longest first: they run side by side.
+cp -r "$root/shaders" "$folder"
+cp "$root"/tests/kernels/*.comp "$folder/tests/kernels"
+long=(contracts/surface contracts/external_light)
+printf '%s\n' "${long[@]}" >"$folder/tests.txt"
+for file in "$root"/tests/{kernels,contracts}/*_test.cpp; do
+    name=${file#"$root/tests/"} name=${name%_test.cpp}
+    [[ " ${long[*]} " = *" $name "* ]] || echo "$name" >>"$folder/tests.txt"
+done
 
 cp "$root"/scenes/*.gltf "$root"/scenes/cloud.nrrd "$folder/scenes"
 references=(cornell_rgb cornell_spectral furnace media_iso veach_mis)

@@ -99,9 +99,9 @@ void copy_buffer(Device& device, VkBuffer from, uint64_t from_offset, VkBuffer t
 
 Buffer::Buffer(Device& device, uint64_t bytes, std::string name)
     : device_(&device), bytes_(std::max<uint64_t>((bytes + 15) / 16 * 16, 16)), name_(std::move(name)) {
-    VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
-                               VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                               VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                               VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                               VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
     if (device.description.max_texels > 0) usage |= VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
     const Allocation made = allocate(device, bytes_, usage, false, name_);
     buffer_ = made.buffer;

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "host/gpu/spirv.h"
+#include "host/gpu/spirv_declarations.h"
 
 namespace etendue {
 namespace {
@@ -17,8 +17,11 @@ struct Block {
 
 class Rewriter {
   public:
-    explicit Rewriter(const Spirv& spirv) : in_(split_spirv(spirv)) {
-        read_types();
+    explicit Rewriter(const Spirv& spirv)
+        : in_(split_spirv(spirv)), out_{in_.header, {}}, declared_(read_declarations(in_)) {
+        for (const auto& [id, type] : declared_.types)
+            if ((type.op == spv::OpTypeInt || type.op == spv::OpTypeFloat) && type.operands[0] == 64)
+                alignment_ = 8;
         find_blocks();
     }
 
@@ -36,58 +39,15 @@ class Rewriter {
             }
             rewrite(op, words);
         }
-        SpirvModule out{in_.header, std::move(out_)};
-        out.header[3] = bound_;
-        result.spirv = join_spirv(out);
+        result.spirv = join_spirv(out_);
         return result;
     }
 
   private:
-    uint32_t new_id() { return bound_++; }
-    void put(SpirvWords words) { out_.push_back(std::move(words)); }
-
-    void read_types() {
-        bound_ = in_.header[3];
-        for (const SpirvWords& w : in_.instructions) switch (spv::Op(w[0])) {
-                case spv::OpTypeRuntimeArray:
-                    run_time_arrays_.insert(w[1]);
-                    break;
-                case spv::OpTypeStruct:
-                    struct_members_[w[1]] = {w.begin() + 2, w.end()};
-                    break;
-                case spv::OpTypePointer:
-                    if (w[2] == spv::StorageClassStorageBuffer) pointees_[w[1]] = w[3];
-                    break;
-                case spv::OpTypeInt:
-                    if (w[2] == 32 && w[3] == 0) uint_ = w[1];
-                    if (w[2] == 64) has_wide_types_ = true;
-                    break;
-                case spv::OpTypeFloat:
-                    if (w[2] == 64) has_wide_types_ = true;
-                    break;
-                case spv::OpTypeVector:
-                    if (w[2] == uint_ && w[3] == 2) uvec2_ = w[1];
-                    break;
-                case spv::OpName:
-                    names_[w[1]] = spirv_text(w, 2);
-                    break;
-                case spv::OpDecorate:
-                    if (w[2] == spv::DecorationBinding) bindings_[w[1]] = w[3];
-                    break;
-                default:
-                    break;
-            }
-    }
-
     // Variables of blocks that end in a run-time array and are used by access chains alone.
     void find_blocks() {
-        for (const SpirvWords& w : in_.instructions) {
-            if (w[0] != spv::OpVariable || w[3] != spv::StorageClassStorageBuffer) continue;
-            const uint32_t type = pointees_.at(w[1]);
-            const auto members = struct_members_.find(type);
-            if (members == struct_members_.end() || !run_time_arrays_.count(members->second.back())) continue;
-            blocks_.push_back({w[2], type, 0, names_.at(type)});
-        }
+        for (const StorageBlock& block : find_storage_blocks(declared_))
+            if (block.array) blocks_.push_back({block.variable, block.type, 0, block.name});
         const auto is_used_otherwise = [&](const Block& block) {
             return std::any_of(in_.instructions.begin(), in_.instructions.end(), [&](const SpirvWords& w) {
                 return (w[0] == spv::OpArrayLength || w[0] == spv::OpFunctionCall ||
@@ -96,9 +56,9 @@ class Rewriter {
             });
         };
         blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), is_used_otherwise), blocks_.end());
-        for (const auto& [variable, binding] : bindings_) binding_ = std::max(binding_, binding + 1);
-        for (Block& block : blocks_) block.address = new_id();
-        if (!blocks_.empty()) table_ = new_id(), table_type_ = new_id();
+        binding_ = declared_.free_binding();
+        for (Block& block : blocks_) block.address = out_.new_id();
+        if (!blocks_.empty()) table_ = out_.new_id(), table_type_ = out_.new_id();
     }
 
     const Block* find_block(uint32_t variable) const {
@@ -109,64 +69,70 @@ class Rewriter {
 
     // The table of addresses, the variables that keep them, and pointer types, behind all other declarations.
     void declare() {
-        if (!uint_) put(spirv_instruction(spv::OpTypeInt, {uint_ = new_id(), 32, 0}));
-        if (!uvec2_) put(spirv_instruction(spv::OpTypeVector, {uvec2_ = new_id(), uint_, 2}));
-        SpirvWords table = spirv_instruction(spv::OpTypeStruct, {table_type_});
-        table.insert(table.end(), blocks_.size(), uvec2_);
-        put(table);
-        const uint32_t to_table = new_id(), to_address = new_id();
-        put(spirv_instruction(spv::OpTypePointer, {to_table, spv::StorageClassStorageBuffer, table_type_}));
-        put(spirv_instruction(spv::OpVariable, {to_table, table_, spv::StorageClassStorageBuffer}));
-        put(spirv_instruction(spv::OpTypePointer,
-                        {table_pointer_ = new_id(), spv::StorageClassStorageBuffer, uvec2_}));
-        put(spirv_instruction(spv::OpTypePointer, {to_address, spv::StorageClassPrivate, uvec2_}));
+        uint_ = declared_.find_type(spv::OpTypeInt, {32, 0});
+        if (!uint_) out_.put(spv::OpTypeInt, {uint_ = out_.new_id(), 32, 0});
+        uvec2_ = declared_.find_type(spv::OpTypeVector, {uint_, 2});
+        if (!uvec2_) out_.put(spv::OpTypeVector, {uvec2_ = out_.new_id(), uint_, 2});
+        out_.put(spv::OpTypeStruct, {table_type_});
+        out_.instructions.back().insert(out_.instructions.back().end(), blocks_.size(), uvec2_);
+        const uint32_t to_table = out_.new_id(), to_address = out_.new_id();
+        out_.put(spv::OpTypePointer, {to_table, spv::StorageClassStorageBuffer, table_type_});
+        out_.put(spv::OpVariable, {to_table, table_, spv::StorageClassStorageBuffer});
+        out_.put(spv::OpTypePointer,
+                 {table_pointer_ = out_.new_id(), spv::StorageClassStorageBuffer, uvec2_});
+        out_.put(spv::OpTypePointer, {to_address, spv::StorageClassPrivate, uvec2_});
         for (uint32_t i = 0; i < blocks_.size(); ++i) {
-            put(spirv_instruction(spv::OpVariable, {to_address, blocks_[i].address, spv::StorageClassPrivate}));
-            put(spirv_instruction(spv::OpConstant, {uint_, new_id(), i}));
-            indices_.push_back(bound_ - 1);
+            out_.put(spv::OpVariable, {to_address, blocks_[i].address, spv::StorageClassPrivate});
+            indices_.push_back(out_.new_id());
+            out_.put(spv::OpConstant, {uint_, indices_[i], i});
         }
         // Of every type that a pointer into a block may have; few are used, which costs nothing.
-        for (const auto& [pointer, pointee] : pointees_)
-            put(spirv_instruction(spv::OpTypePointer, {by_address_[pointee] = new_id(),
-                                                 spv::StorageClassPhysicalStorageBuffer, pointee}));
+        for (const auto& [pointer, type] : declared_.types) {
+            if (type.op != spv::OpTypePointer || type.operands[0] != spv::StorageClassStorageBuffer) continue;
+            const uint32_t pointee = type.operands[1];
+            out_.put(spv::OpTypePointer,
+                     {by_address_[pointee] = out_.new_id(), spv::StorageClassPhysicalStorageBuffer, pointee});
+        }
     }
 
     void decorate_table() {
-        put(spirv_instruction(spv::OpDecorate, {table_type_, spv::DecorationBlock}));
-        put(spirv_instruction(spv::OpDecorate, {table_, spv::DecorationDescriptorSet, 0}));
-        put(spirv_instruction(spv::OpDecorate, {table_, spv::DecorationBinding, binding_}));
+        out_.put(spv::OpDecorate, {table_type_, spv::DecorationBlock});
+        out_.put(spv::OpDecorate, {table_, spv::DecorationDescriptorSet, 0});
+        out_.put(spv::OpDecorate, {table_, spv::DecorationBinding, binding_});
         for (uint32_t i = 0; i < blocks_.size(); ++i) {
-            put(spirv_instruction(spv::OpMemberDecorate, {table_type_, i, spv::DecorationOffset, 8 * i}));
-            put(spirv_instruction(spv::OpMemberDecorate, {table_type_, i, spv::DecorationNonWritable}));
+            out_.put(spv::OpMemberDecorate, {table_type_, i, spv::DecorationOffset, 8 * i});
+            out_.put(spv::OpMemberDecorate, {table_type_, i, spv::DecorationNonWritable});
         }
     }
 
     // At the start of the kernel: every address once.
     void load_addresses() {
         for (size_t i = 0; i < blocks_.size(); ++i) {
-            const uint32_t at = new_id(), address = new_id();
-            put(spirv_instruction(spv::OpAccessChain, {table_pointer_, at, table_, indices_[i]}));
-            put(spirv_instruction(spv::OpLoad, {uvec2_, address, at}));
-            put(spirv_instruction(spv::OpStore, {blocks_[i].address, address}));
+            const uint32_t at = out_.new_id(), address = out_.new_id();
+            out_.put(spv::OpAccessChain, {table_pointer_, at, table_, indices_[i]});
+            out_.put(spv::OpLoad, {uvec2_, address, at});
+            out_.put(spv::OpStore, {blocks_[i].address, address});
         }
     }
 
-    // Accesses through an address state its alignment: that of the widest scalar.
+    // Accesses through an address state its alignment.
     void align(SpirvWords& words, size_t mask_at) {
         if (words.size() <= mask_at) words.push_back(0);
         if (words[mask_at] & spv::MemoryAccessAlignedMask) return;
         words[mask_at] |= spv::MemoryAccessAlignedMask;
-        words.insert(words.begin() + long(mask_at) + 1, has_wide_types_ ? 8 : 4);
+        words.insert(words.begin() + long(mask_at) + 1, alignment_);
     }
 
     void rewrite(spv::Op op, SpirvWords& words) {
+        // Variables of the function stand before all else in its first block.
+        if (at_start_ && op != spv::OpVariable) load_addresses(), at_start_ = false;
         switch (op) {
             case spv::OpMemoryModel:
                 words[1] = spv::AddressingModelPhysicalStorageBuffer64;
                 break;
             case spv::OpCapability:
                 if (!has_capability_)
-                    put(spirv_instruction(spv::OpCapability, {spv::CapabilityPhysicalStorageBufferAddresses}));
+                    out_.put(spv::OpCapability, {spv::CapabilityPhysicalStorageBufferAddresses});
                 has_capability_ = true;
                 if (words[1] == spv::CapabilityPhysicalStorageBufferAddresses) return;
                 break;
@@ -193,14 +159,14 @@ class Rewriter {
             case spv::OpAccessChain:
             case spv::OpInBoundsAccessChain:
                 if (const Block* block = find_block(words[3])) {
-                    const uint32_t address = new_id(), pointer = new_id();
-                    put(spirv_instruction(spv::OpLoad, {uvec2_, address, block->address}));
-                    put(spirv_instruction(spv::OpBitcast, {by_address_.at(block->type), pointer, address}));
+                    const uint32_t address = out_.new_id(), pointer = out_.new_id();
+                    out_.put(spv::OpLoad, {uvec2_, address, block->address});
+                    out_.put(spv::OpBitcast, {by_address_.at(block->type), pointer, address});
                     words[3] = pointer;
                 } else if (!addressed_.count(words[3])) {
                     break;
                 }
-                words[1] = by_address_.at(pointees_.at(words[1]));
+                words[1] = by_address_.at(declared_.types.at(words[1]).operands[1]);
                 addressed_.insert(words[2]);
                 break;
             case spv::OpLoad:
@@ -212,29 +178,15 @@ class Rewriter {
             default:
                 break;
         }
-        put(words);
-        // Variables of the function stand before all else in its first block.
-        if (op == spv::OpLabel && in_entry_)
-            at_start_ = true, in_entry_ = false;
-        else if (at_start_ && op != spv::OpVariable) {
-            const SpirvWords first = std::move(out_.back());
-            out_.pop_back();
-            load_addresses();
-            put(first);
-            at_start_ = false;
-        }
+        out_.instructions.push_back(words);
+        if (op == spv::OpLabel && in_entry_) at_start_ = true, in_entry_ = false;
     }
 
-    SpirvModule in_;
-    std::vector<SpirvWords> out_;
-    uint32_t bound_ = 0, binding_ = 0;
-    std::set<uint32_t> run_time_arrays_;
-    std::map<uint32_t, SpirvWords> struct_members_;
-    std::map<uint32_t, uint32_t> pointees_;  // of pointers to storage buffers
-    std::map<uint32_t, uint32_t> bindings_;
-    std::map<uint32_t, std::string> names_;
-    bool has_wide_types_ = false;
+    SpirvModule in_, out_;
+    SpirvDeclarations declared_;
     std::vector<Block> blocks_;
+    uint32_t binding_ = 0;    // of the table
+    uint32_t alignment_ = 4;  // of the widest scalar
     uint32_t uint_ = 0, uvec2_ = 0, table_ = 0, table_type_ = 0, table_pointer_ = 0;
     std::vector<uint32_t> indices_;            // constants 0, 1, …
     std::map<uint32_t, uint32_t> by_address_;  // pointee -> pointer by address

@@ -124,8 +124,9 @@ VkQueueFlags queue_flags(bool for_windows) {
     return VK_QUEUE_COMPUTE_BIT | (for_windows ? VK_QUEUE_GRAPHICS_BIT : 0);
 }
 
-// Than storage buffers (host/gpu/texel_reads.h)? Lavapipe compiles the fetch of a texel once for all kernels since Mesa 23.3; with
-// AVX-512 it gathers from storage buffers by one instruction. ETENDUE_READS=texels or =addresses decides for whoever measures.
+// Than storage buffers (host/gpu/texel_reads.h)? Lavapipe compiles the fetch of a texel once for all kernels
+// since Mesa 23.3; with AVX-512 it gathers from storage buffers by one instruction. ETENDUE_READS=texels or
+// =addresses decides for whoever measures.
 bool reads_texels_faster(const VkPhysicalDeviceDriverProperties& driver, uint32_t version) {
     if (const char* reads = std::getenv("ETENDUE_READS")) return std::string_view(reads) == "texels";
     if (driver.driverID != VK_DRIVER_ID_MESA_LLVMPIPE || version < VK_MAKE_VERSION(24, 0, 0)) return false;

@@ -20,9 +20,10 @@ struct DeviceDescription {
     std::string type;          // discrete GPU, integrated GPU, virtual GPU, CPU, other
     uint32_t api_version = 0;
     uint32_t subgroup_size = 0;
-    uint64_t max_buffer_range = 0;     // bytes of one storage buffer binding
-    uint64_t max_allocation = 0;       // bytes
-    // Of one texel buffer, and how many a kernel may have; 0 where reading storage buffers is as fast (host/gpu/texel_reads.h).
+    uint64_t max_buffer_range = 0;  // bytes of one storage buffer binding
+    uint64_t max_allocation = 0;    // bytes
+    // Of one texel buffer, and how many a kernel may have; 0 where reading storage buffers is as fast
+    // (host/gpu/texel_reads.h).
     uint64_t max_texels = 0;
     uint32_t max_texel_buffers = 0;
     uint64_t memory = 0;               // bytes of the largest device-local heap

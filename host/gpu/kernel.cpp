@@ -53,7 +53,8 @@ Program::Program(Device& device, const CompiledShader& shader, const std::set<st
         bindings.push_back(
             {binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     for (const TexelShader::View& view : texel_views_)
-        bindings.push_back({view.binding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+        bindings.push_back(
+            {view.binding, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     set_info.bindingCount = uint32_t(bindings.size());
     set_info.pBindings = bindings.data();
@@ -88,7 +89,8 @@ Program::Program(Device& device, const CompiledShader& shader, const std::set<st
 }
 
 bool Program::has_texels(const std::string& block) const {
-    return std::any_of(texel_views_.begin(), texel_views_.end(), [&](auto& view) { return view.block == block; });
+    return std::any_of(texel_views_.begin(), texel_views_.end(),
+                       [&](auto& view) { return view.block == block; });
 }
 
 Program::~Program() {
@@ -156,7 +158,8 @@ Kernel::Kernel(Device& device, std::shared_ptr<const Program> program, const Buf
 void Kernel::bind_texels(const TexelShader::View& view, const Buffer& buffer) {
     if (buffer.bytes() / 4 / view.words > device_->description.max_texels)
         fail_device("{} needs {:.0f} MiB in one texel buffer; this device allows {:.0f} MiB", view.block,
-                    double(buffer.bytes()) / 1048576.0, double(device_->description.max_texels * 4 * view.words) / 1048576.0);
+                    double(buffer.bytes()) / 1048576.0,
+                    double(device_->description.max_texels * 4 * view.words) / 1048576.0);
     VkBufferViewCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO};
     info.buffer = buffer.handle();
     info.format = texel_format(view.words);

@@ -67,7 +67,8 @@ class Kernel {
     // binding.
     Kernel(Device& device, std::shared_ptr<const Program> program, const BufferTable& buffers);
     Kernel(Device& device, const CompiledShader& shader, const BufferTable& buffers)
-        : Kernel(device, std::make_shared<const Program>(device, shader, beyond_texels(device, buffers)), buffers) {}
+        : Kernel(device, std::make_shared<const Program>(device, shader, beyond_texels(device, buffers)),
+                 buffers) {}
     Kernel(Kernel&& other) noexcept { swap(other); }
     Kernel& operator=(Kernel&& other) noexcept {
         swap(other);

@@ -10,8 +10,8 @@
 
 namespace etendue {
 
-// One instruction: its words, the first without the count. Operand positions follow the SPIR-V specification, section 3.49
-// (instructions).
+// One instruction: its words, the first without the count. Operand positions follow the SPIR-V specification,
+// section 3.49 (instructions).
 using SpirvWords = std::vector<uint32_t>;
 
 SpirvWords spirv_instruction(spv::Op op, std::initializer_list<uint32_t> operands);
@@ -23,6 +23,11 @@ std::string spirv_text(const SpirvWords& words, size_t at);
 struct SpirvModule {
     SpirvWords header;
     std::vector<SpirvWords> instructions;
+
+    uint32_t new_id() { return header[3]++; }
+    void put(spv::Op op, std::initializer_list<uint32_t> operands) {
+        instructions.push_back(spirv_instruction(op, operands));
+    }
 };
 
 SpirvModule split_spirv(const Spirv& spirv);  // fails where it is none

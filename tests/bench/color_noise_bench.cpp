@@ -17,6 +17,7 @@
 #include "host/gltf/gltf.h"
 #include "host/scene/scene_compiler.h"
 #include "host/spectra/color.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -42,7 +43,7 @@ std::vector<glm::dvec3> colors(const Image& image) {
 
 Noise measure(Device& device, const std::string& file, ColorMode color, double seconds) {
     SceneOptions options;
-    options.shaders = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    options.shaders = source_path("shaders");
     options.cache_folder = default_cache_folder();
     options.color = color;
     Scene scene = compile_scene(device, import_gltf(file), options);
@@ -90,7 +91,7 @@ int main(int argc, char** argv) {
     try {
         auto device = create_device();
         fmt::print("{}, {}\n", device->description.name, device->description.driver);
-        const std::string file = argc > 1 ? argv[1] : ETENDUE_SOURCE_DIR "/scenes/cornell_box.gltf";
+        const std::string file = argc > 1 ? argv[1] : source_path("scenes/cornell_box.gltf");
         const double seconds = argc > 2 ? std::stod(argv[2]) : 4;
         const Noise rgb = measure(*device, file, ColorMode::rgb, seconds);
         const Noise spectral = measure(*device, file, ColorMode::spectral, seconds);

@@ -4,12 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
 namespace {
 
-const std::string caustic_box = std::string(ETENDUE_SOURCE_DIR) + "/scenes/caustic_box.gltf";
+const std::string caustic_box = source_path("scenes/caustic_box.gltf");
 
 nlohmann::json stats_of(const Executable& program, const Run& run) {
     REQUIRE_MESSAGE(run.code == 0, run.err);

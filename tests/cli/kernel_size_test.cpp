@@ -11,6 +11,7 @@
 #include "tests/support/bsdf_files.h"
 #include "tests/support/render_probe.h"
 #include "tests/support/light_probe.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -49,7 +50,7 @@ void check_sizes(const Executable& program, const std::string& scene) {
 TEST_CASE("kernels of the example scenes are within the budget") {
     const Executable program;
     size_t scenes = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(ETENDUE_SOURCE_DIR "/scenes")) {
+    for (const auto& entry : std::filesystem::directory_iterator(source_path("scenes"))) {
         if (entry.path().extension() != ".gltf") continue;
         check_sizes(program, entry.path().string());
         ++scenes;
@@ -61,7 +62,7 @@ TEST_CASE("kernels of the example scenes are within the budget") {
 TEST_CASE("kernels of scenes without features hold nothing of them") {
     const Executable program;
     for (const char* scene : {"cornell_box", "furnace_closed"}) {
-        const auto file = std::string(ETENDUE_SOURCE_DIR "/scenes/") + scene + ".gltf";
+        const auto file = source_path("scenes/" + std::string(scene) + ".gltf");
         CHECK_MESSAGE(largest_kernel(program, file, "backward").bytes <= 76 << 10, scene);
     }
 }
@@ -83,7 +84,7 @@ TEST_CASE("kernels of a scene of each class of surfaces and media are within the
     metal.reflectance = [](double, size_t) { return 0.8; };
     std::ofstream(program.folder / "metal.bsdf", std::ios::binary) << tensor_file_bytes(rgl_fields(metal, {}));
     const auto scene_of = [&](const nlohmann::json& surface, const nlohmann::json& medium) {
-        auto scene = nlohmann::json::parse(read_text(ETENDUE_SOURCE_DIR "/scenes/caustic_box.gltf"));
+        auto scene = nlohmann::json::parse(read_text(source_path("scenes/caustic_box.gltf")));
         auto medium_named = medium;
         medium_named["name"] = "probed";
         scene["extensions"]["ETD_optics"]["media"].push_back(medium_named);

@@ -5,6 +5,7 @@
 
 #include "host/scene/scene.h"
 #include "tests/support/device_fixture.h"
+#include "tests/support/source_path.h"
 #include "tests/support/statistics.h"
 
 using namespace etendue;
@@ -109,7 +110,7 @@ std::vector<Sample> run_samples(Scene& scene, glm::dvec3 point, uint32_t count,
 
 Scene compile(const SceneDescription& description) {
     SceneOptions options;
-    options.shaders = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    options.shaders = source_path("shaders");
     return compile_scene(test_device(), description, options);
 }
 

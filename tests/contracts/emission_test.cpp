@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "tests/contracts/emission_cases.h"
+#include "tests/support/source_path.h"
 #include "tests/support/statistics.h"
 
 using namespace etendue;
@@ -137,7 +138,7 @@ double disk_p_value(Probed& p) {
 }  // namespace
 
 TEST_CASE("emission: every registered class of light has a configuration to be tested with") {
-    ClassRegistry registry(ShaderSources{.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders"});
+    ClassRegistry registry(ShaderSources{.folder = source_path("shaders")});
     for (const ClassInfo& info : registry.classes(Interface::light)) {
         CAPTURE(info.name);
         bool found = false;

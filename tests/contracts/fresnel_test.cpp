@@ -4,6 +4,7 @@
 #include <complex>
 
 #include "tests/contracts/surface_configurations.h"
+#include "tests/support/source_path.h"
 #include "tests/support/surface_probe.h"
 
 using namespace etendue;
@@ -97,7 +98,7 @@ TEST_CASE("a conductor that does not absorb reflects as a dielectric") {
 
 TEST_CASE("nearly matched media pass light straight on") {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     ClassRegistry registry(sources);
     SurfaceProbe probe(registry, "dielectric",
                        {{{"alpha", 0.0}}, {{"alpha", 0.3}}, {{"alpha", 1.0}, {"multiscatter", true}}});
@@ -121,7 +122,7 @@ TEST_CASE("nearly matched media pass light straight on") {
 
 TEST_CASE("surfaces stay finite and not negative at the ends of their parameters and directions") {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     ClassRegistry registry(sources);
     // Directions on and beside the horizon and the normal, exactly opposite and mirrored ones among their
     // pairs.

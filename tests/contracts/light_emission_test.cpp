@@ -6,6 +6,7 @@
 #include "host/lights/emission_choice.h"
 #include "host/scene/features.h"
 #include "tests/support/device_fixture.h"
+#include "tests/support/source_path.h"
 #include "tests/support/statistics.h"
 
 using namespace etendue;
@@ -39,7 +40,7 @@ const char* const text = R"(
 std::vector<Choice> choose(const std::vector<EmissionChoice>& table, uint32_t lights,
                            const std::vector<float>& numbers) {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     sources.generated["choose_emitters.comp"] = text;
     Features features;
     features.light_count = lights;

@@ -7,6 +7,7 @@
 #include "host/scene/features.h"
 #include "host/lights/light_tree.h"
 #include "tests/support/device_fixture.h"
+#include "tests/support/source_path.h"
 #include "tests/support/statistics.h"
 
 using namespace etendue;
@@ -113,7 +114,7 @@ class Selection {
     void run(uint32_t count, uint32_t list, const std::vector<glm::vec3>& points, Buffer& choices,
              Buffer& probabilities) {
         ShaderSources sources;
-        sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+        sources.folder = source_path("shaders");
         sources.generated["select_lights.comp"] = text;
         Features features;
         features.light_count = count_;

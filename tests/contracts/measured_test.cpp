@@ -7,6 +7,7 @@
 
 #include "tests/contracts/surface_configurations.h"
 #include "tests/support/bsdf_files.h"
+#include "tests/support/source_path.h"
 #include "tests/support/surface_probe.h"
 #include "tests/support/temporary_folder.h"
 
@@ -104,7 +105,7 @@ struct Difference {
 // Over random directions for some fixed ones.
 Difference difference(const std::string& file, const std::string& class_name, const json& parameters) {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     ClassRegistry registry(sources);
     SurfaceProbe measured(registry, "measured", {{{"file", file}}}),
         exact(registry, class_name, {parameters});
@@ -216,7 +217,7 @@ TEST_CASE("a brushed metal's RGL file is that metal, whichever part of a turn it
         resolution.theta_i = {0, 0.3, 0.6, 0.9, 1.2, 1.5};
         resolution.points = 96, resolution.value_points = 16;
         ShaderSources sources;
-        sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+        sources.folder = source_path("shaders");
         ClassRegistry registry(sources);
         SurfaceProbe probe(registry, "measured",
                            {{{"file", write_rgl("part.bsdf", rgl_fields(metal, {}, resolution))}}});
@@ -253,7 +254,7 @@ TEST_CASE("a brushed metal's RGL file is that metal, whichever part of a turn it
 TEST_CASE("samples of a measured metal weigh what it reflects") {
     // The density follows the values: weights differ by the colours alone.
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     ClassRegistry registry(sources);
     const std::string table = write_table("grey.json", [] {
         json t = gold_table(0.4, 13);

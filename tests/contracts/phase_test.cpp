@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "host/scene/records.h"
+#include "tests/support/source_path.h"
 #include "tests/support/statistics.h"
 #include "tests/support/surface_probe.h"
 
@@ -41,7 +42,7 @@ std::vector<double> cosine_bounds() {
 
 TEST_CASE("phase functions: values integrate to one, samples follow them, and keep the mean cosine") {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     ClassRegistry registry(sources);
     const std::vector<double> bounds = cosine_bounds();
     constexpr int points = 64;  // of the midpoint rule in a cell

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "tests/support/source_path.h"
 #include "tests/support/surface_probe.h"
 
 namespace etendue {
@@ -183,7 +184,7 @@ namespace {
 
 ClassRegistry extension_registry() {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     return ClassRegistry(sources);
 }
 

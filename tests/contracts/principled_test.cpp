@@ -1,13 +1,14 @@
 // What glTF says of its material, in particular: where its numbers come from.
 #include <cmath>
 
+#include "tests/support/source_path.h"
 #include "tests/support/surface_probe.h"
 
 using namespace etendue;
 
 TEST_CASE("principled: textures and vertex colours multiply their parameters, each from its channel") {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     ClassRegistry registry(sources);
     const auto value = [](double r, double g, double b, double a) {
         return nlohmann::json{{"value", {r, g, b, a}}};
@@ -40,7 +41,7 @@ TEST_CASE("principled: textures and vertex colours multiply their parameters, ea
 
 TEST_CASE("principled: a mask shows where alpha reaches the cutoff and nothing shows elsewhere") {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     ClassRegistry registry(sources);
     SurfaceProbe probe(registry, "principled", {{{"alpha_mode", 1}, {"alpha_cutoff", 0.5}}});
     for (float alpha : {0.0f, 0.499f, 0.5f, 1.0f}) {

@@ -7,6 +7,7 @@
 
 #include "host/scene/records.h"
 #include "tests/support/device_fixture.h"
+#include "tests/support/source_path.h"
 #include "tests/support/statistics.h"
 
 using namespace etendue;
@@ -103,7 +104,7 @@ std::vector<Configuration> configurations(const std::string& name) {
 class ReceiverProbe {
   public:
     ReceiverProbe(const std::string& class_name, const Configuration& c) : aspect_(float(c.aspect)) {
-        sources_.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+        sources_.folder = source_path("shaders");
         ClassRegistry registry(sources_);
         const ClassInfo* info = registry.find(Interface::receiver, class_name);
         const SceneDescription scene;
@@ -151,7 +152,7 @@ class ReceiverProbe {
 // Calls test(probe, configuration) for every class and configuration.
 template <class Test>
 void for_every_receiver(const Test& test) {
-    ClassRegistry registry(ShaderSources{.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders"});
+    ClassRegistry registry(ShaderSources{.folder = source_path("shaders")});
     for (const ClassInfo& info : registry.classes(Interface::receiver))
         for (const Configuration& c : configurations(info.name)) {
             INFO(info.name, ", ", c.label);
@@ -178,7 +179,7 @@ double solid_angle(const glm::dvec3& a, const glm::dvec3& b,
 }  // namespace
 
 TEST_CASE("receiver: every registered class has a configuration to be tested with") {
-    ClassRegistry registry(ShaderSources{.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders"});
+    ClassRegistry registry(ShaderSources{.folder = source_path("shaders")});
     for (const ClassInfo& info : registry.classes(Interface::receiver)) {
         CAPTURE(info.name);
         CHECK(!configurations(info.name).empty());

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "tests/contracts/surface_configurations.h"
+#include "tests/support/source_path.h"
 #include "tests/support/sphere_cells.h"
 #include "tests/support/statistics.h"
 #include "tests/support/surface_probe.h"
@@ -158,7 +159,7 @@ Measurement measure(SurfaceProbe& probe, size_t record, const SurfaceConfigurati
 ClassRegistry& registry() {
     static ClassRegistry result = [] {
         ShaderSources sources;
-        sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+        sources.folder = source_path("shaders");
         return ClassRegistry(sources);
     }();
     return result;

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "host/spectra/color.h"
+#include "tests/support/source_path.h"
 #include "tests/support/surface_probe.h"
 
 using namespace etendue;
@@ -131,7 +132,7 @@ TEST_CASE("thin films have in colours the mean reflectance of the channels under
 
 TEST_CASE("a film of no thickness is not there, and one of many micrometres shows no fringes in colours") {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     ClassRegistry registry(sources);
     SurfaceProbe films(
         registry, "thin_film",

@@ -7,6 +7,7 @@
 
 #include "host/error.h"
 #include "host/scene/classes.h"
+#include "tests/support/source_path.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace etendue;
@@ -14,7 +15,7 @@ using namespace etendue;
 namespace {
 ShaderSources sources() {
     ShaderSources result;
-    result.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    result.folder = source_path("shaders");
     return result;
 }
 const Parameter& parameter(const ClassInfo& info, const std::string& name) {

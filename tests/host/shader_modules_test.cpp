@@ -7,6 +7,8 @@
 #include <regex>
 #include <string>
 
+#include "tests/support/source_path.h"
+
 namespace {
 
 struct Conditions {
@@ -18,7 +20,7 @@ struct Conditions {
 Conditions conditions(const std::string& folder, bool allows_direction) {
     const std::regex condition(R"(^\s*#\s*(if|ifdef|ifndef|elif)\b.*)"), direction(R"(^\s*#if !?FORWARD\s*$)");
     Conditions found;
-    for (const auto& entry : std::filesystem::directory_iterator(ETENDUE_SOURCE_DIR "/shaders/" + folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(etendue::source_path("shaders/" + folder))) {
         std::ifstream file(entry.path());
         ++found.files;
         std::string line;

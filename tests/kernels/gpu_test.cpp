@@ -87,6 +87,23 @@ TEST_CASE(
     CHECK(changed.blocks == std::vector<std::string>{"Large"});
 }
 
+TEST_CASE("a kernel may begin with a read of a buffer") {
+    Device& device = test_device();
+    Buffer in = create_buffer(device, std::vector<uint32_t>{5, 6}, "input");
+    Buffer out(device, 8, "output");
+    const char* text = R"(
+        layout(local_size_x = 1) in;
+        layout(scalar, set = 0) readonly buffer Input { uint values[]; };
+        layout(scalar, set = 0) buffer Output { uint results[]; };
+        void main() { results[0] = values[1]; }
+    )";
+    const Kernel kernel = make_test_kernel("read_first", text, {{"Input", &in}, {"Output", &out}});
+    CommandList list(device);
+    list.dispatch(kernel, 1);
+    list.run();
+    CHECK(out.read_array<uint32_t>(1)[0] == 6);
+}
+
 TEST_CASE("a buffer that the host does not bind is named") {
     CHECK_THROWS_WITH_AS(
         make_test_kernel("lonely",

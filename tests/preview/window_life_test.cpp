@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/preview/two_balls.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -134,8 +135,7 @@ TEST_CASE(
 
 TEST_CASE("shaders of a folder are read again when they change") {
     TemporaryFolder shaders;
-    std::filesystem::copy(std::filesystem::path(ETENDUE_SOURCE_DIR) / "shaders", shaders.path,
-                          std::filesystem::copy_options::recursive);
+    std::filesystem::copy(source_path("shaders"), shaders.path, std::filesystem::copy_options::recursive);
     ViewedScene view(two_balls, words_with("320x240", {"--shaders", shaders.path.string()}));
     view.x.key("Tab");
     REQUIRE(shows(view.x, headless_image(two_balls, "320x240"), {}));

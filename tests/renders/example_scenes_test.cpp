@@ -7,14 +7,13 @@
 
 #include "host/gltf/gltf.h"
 #include "tests/support/render_probe.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
 namespace {
 
-std::filesystem::path example(const std::string& name) {
-    return std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes" / (name + ".gltf");
-}
+std::filesystem::path example(const std::string& name) { return source_path("scenes/" + name + ".gltf"); }
 
 Estimates render_example(const std::string& name, uint32_t width, uint32_t height, uint32_t passes) {
     RenderPlan plan;
@@ -32,8 +31,7 @@ void check_uniform(const std::string& name, uint32_t passes, double value, doubl
 
 TEST_CASE("every example scene is read without a warning") {
     size_t count = 0;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes")) {
+    for (const auto& entry : std::filesystem::directory_iterator(source_path("scenes"))) {
         if (entry.path().extension() != ".gltf") continue;
         const SceneDescription scene = import_gltf(entry.path());
         CHECK_MESSAGE(scene.warnings.empty(), entry.path().string());

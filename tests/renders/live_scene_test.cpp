@@ -7,6 +7,7 @@
 #include "host/scene/live_places.h"
 #include "host/scene/live_scene.h"
 #include "tests/support/render_probe.h"
+#include "tests/support/source_path.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace etendue;
@@ -36,7 +37,7 @@ SceneBuilder room(const Values& v) {
 
 SceneOptions test_options() {
     SceneOptions options;
-    options.shaders = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    options.shaders = source_path("shaders");
     options.cache_folder = default_cache_folder();
     return options;
 }
@@ -383,8 +384,7 @@ TEST_CASE("objects are listed with what their classes know of their parameters")
 TEST_CASE("a broken shader is one line, and the scene before it stays") {
     TemporaryFolder folder;
     const std::filesystem::path shaders = folder / "shaders";
-    std::filesystem::copy(std::string(ETENDUE_SOURCE_DIR) + "/shaders", shaders,
-                          std::filesystem::copy_options::recursive);
+    std::filesystem::copy(source_path("shaders"), shaders, std::filesystem::copy_options::recursive);
     SceneOptions options = test_options();
     options.shaders = shaders;
     LiveScene live(test_device(), write(folder, room({})), options);

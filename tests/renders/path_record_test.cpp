@@ -9,6 +9,7 @@
 #include "host/gltf/gltf.h"
 #include "host/scene/spectral_value.h"
 #include "tests/support/render_probe.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -65,7 +66,7 @@ SceneBuilder ball_and_lamp() {
 }  // namespace
 
 TEST_CASE("what the prism of the example refracts obeys Snell's law at the wavelength that is left") {
-    const SceneDescription description = import_gltf(std::string(ETENDUE_SOURCE_DIR) + "/scenes/prism.gltf");
+    const SceneDescription description = import_gltf(source_path("scenes/prism.gltf"));
     Scene scene = compile_test_scene(description);
     const SpectralTable glass =
         *spectral_value({{"name", "SF11 ior"}}, description, "", SpectralKind::index).table;

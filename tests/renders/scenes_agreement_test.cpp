@@ -8,6 +8,7 @@
 
 #include "host/gltf/gltf.h"
 #include "tests/renders/algorithm_comparison.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -37,8 +38,7 @@ void widen_lamp(SceneDescription& scene, float factor) {
 
 std::vector<std::filesystem::path> scene_files() {
     std::vector<std::filesystem::path> files;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::filesystem::path(ETENDUE_SOURCE_DIR) / "scenes"))
+    for (const auto& entry : std::filesystem::directory_iterator(source_path("scenes")))
         if (entry.path().extension() == ".gltf") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;

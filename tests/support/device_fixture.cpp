@@ -2,6 +2,8 @@
 
 #include <cstdlib>
 
+#include "tests/support/source_path.h"
+
 namespace etendue {
 namespace {
 
@@ -27,7 +29,7 @@ std::vector<std::string> collected_validation_messages() {
 Kernel make_test_kernel(const std::string& name, const std::string& text, const BufferTable& buffers,
                         std::map<std::string, std::string> generated) {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     sources.generated = std::move(generated);
     sources.generated[name] = text;
     return Kernel(test_device(), compile_shader(sources, name), buffers);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "tests/support/source_path.h"
+
 namespace etendue {
 namespace {
 
@@ -112,7 +114,7 @@ const char* const text = R"(
 
 EmissionProbe::EmissionProbe(const SceneDescription& description) {
     SceneOptions options;
-    options.shaders = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    options.shaders = source_path("shaders");
     options.cache_folder = cache_.path;
     scene_ = compile_scene(test_device(), description, options);
     scene_.sources.generated["probe_emission.comp"] = text;

@@ -2,6 +2,7 @@
 
 #include "host/lights/environment_map.h"
 #include "host/scene/records.h"
+#include "tests/support/source_path.h"
 
 namespace etendue {
 namespace {
@@ -47,7 +48,7 @@ const char* const evaluate_kernel = R"(
 
 ShaderSources test_sources() {
     ShaderSources sources;
-    sources.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    sources.folder = source_path("shaders");
     return sources;
 }
 

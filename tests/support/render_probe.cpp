@@ -10,6 +10,7 @@
 #include "host/gpu/shader_compiler.h"
 #include "host/image/compare.h"
 #include "host/gltf/gltf.h"
+#include "tests/support/source_path.h"
 #include "tests/support/statistics.h"
 
 namespace etendue {
@@ -181,7 +182,7 @@ void add_box(SceneBuilder& scene, const glm::vec3& size, int material, bool inwa
 
 Scene compile_test_scene(const SceneDescription& description) {
     SceneOptions options;
-    options.shaders = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    options.shaders = source_path("shaders");
     options.cache_folder = default_cache_folder();
     return compile_scene(test_device(), description, options);
 }
@@ -369,7 +370,7 @@ WindowMean window_mean(const Estimates& e, const Window& window, int channel) {
 
 std::optional<std::filesystem::path> shared_file(const std::string& name) {
     const char* given = std::getenv("ETENDUE_SHARED");
-    const std::filesystem::path folder = given ? given : std::string(ETENDUE_SOURCE_DIR) + "/../shared";
+    const std::filesystem::path folder = given ? given : source_path("../shared");
     if (std::filesystem::exists(folder / name)) return folder / name;
     if (std::getenv("ETENDUE_ALLOW_MISSING_SHARED"))
         MESSAGE("left out: there is no ", name);

@@ -7,6 +7,7 @@
 
 #include "host/scene/features.h"
 #include "host/scene/records.h"
+#include "tests/support/source_path.h"
 
 namespace etendue {
 namespace {
@@ -25,7 +26,7 @@ uint32_t groups(size_t count) { return uint32_t((count + 63) / 64); }
 }  // namespace
 
 std::string test_kernel_text(const std::string& name) {
-    std::ifstream file(std::string(ETENDUE_SOURCE_DIR) + "/tests/kernels/" + name);
+    std::ifstream file(source_path("tests/kernels/" + name));
     REQUIRE_MESSAGE(file, "tests/kernels/", name);
     std::ostringstream text;
     text << file.rdbuf();

@@ -4,13 +4,14 @@
 #include <ctime>
 
 #include "host/error.h"
+#include "tests/support/source_path.h"
 
 namespace etendue {
 namespace {
 
 ShaderSources sources() {
     ShaderSources result;
-    result.folder = std::string(ETENDUE_SOURCE_DIR) + "/shaders";
+    result.folder = source_path("shaders");
     return result;
 }
 

@@ -39,18 +39,25 @@ fail() { # NAME VERDICT LAST_LINE
     failures+=("{\"step\":$(text "$1"),\"verdict\":\"$2\",\"last_line\":$(text "$3")}")
 }
 
-# step NAME SECONDS COMMAND…: leaves verdict, seconds, output and its last line, of a test that of its first error.
-step() {
-    local name=$1 limit=$2 left=$((total - SECONDS)) start taken log code line
+# perform NAME SECONDS COMMAND…: runs it, with the output and what became of it in files of that name.
+perform() {
+    local log=$out/logs/${1//[ \/]/_} limit=$2 left=$((total - SECONDS)) start=${EPOCHREALTIME/./}
     shift 2
+    [ $left -ge 3 ] || return
+    [ "$limit" -lt $left ] || limit=$left
+    timeout -k 5 "$limit" "$@" >"$log.txt" 2>&1 </dev/null &
+    wait $!
+    echo $? $(((${EPOCHREALTIME/./} - start) / 1000)) "$limit" >"$log.ended"
+}
+# judge NAME: leaves verdict, seconds, output and its last line, of a test that of its first error.
+judge() {
+    local log=$out/logs/${1//[ \/]/_} code taken limit line
     verdict="not run" seconds=null output="" last="the time for all steps was over"
-    if [ $left -ge 3 ]; then
-        log=$out/logs/${name//[ \/]/_}.txt start=${EPOCHREALTIME/./}
-        [ "$limit" -lt $left ] || limit=$left
-        timeout -k 5 "$limit" "$@" >"$log" 2>&1 </dev/null
-        code=$? taken=$(((${EPOCHREALTIME/./} - start) / 1000))
+    if [ -e "$log.ended" ]; then
+        read -r code taken limit <"$log.ended"
+        rm "$log.ended"
         printf -v seconds '%d.%03d' $((taken / 1000)) $((taken % 1000))
-        output=$(<"$log") last=""
+        output=$(<"$log.txt") last=""
         while read -r line; do [[ -z $line || $last = *" ERROR: "* ]] || last=$line; done <<<"$output"
         case $code in
             0) verdict=passed ;;
@@ -59,8 +66,12 @@ step() {
             *) verdict=failed ;;
         esac
     fi
-    [ "$verdict" = passed ] || fail "$name" "$verdict" "$last"
-    printf '%-44s %-9s %s s\n' "$name" "$verdict" "$seconds"
+    [ "$verdict" = passed ] || fail "$1" "$verdict" "$last"
+    printf '%-44s %-9s %s s\n' "$1" "$verdict" "$seconds"
+}
+step() { # NAME SECONDS COMMAND…
+    perform "$@"
+    judge "$1"
 }
 found() { # REGEX: what its group matches in the output, else null
     if [[ $output =~ $1 ]]; then printf '%s' "${BASH_REMATCH[1]}"; else printf null; fi
@@ -79,7 +90,8 @@ write_result() {
     printf '"first_passes":[%s],\n"images":[%s],\n"rates":[%s],\n"tests":[%s],\n"failures":[%s]}\n' "$(join "${starts[@]}")" \
         "$(join "${images[@]}")" "$(join "${rates[@]}")" "$(join "${tests[@]}")" "$(join "${failures[@]}")"
 } >"$out/result.json"
-trap 'fail run interrupted ""; write_result; exit 1' INT TERM
+stop_jobs() { kill $(jobs -p) 2>/dev/null; }
+trap 'stop_jobs; fail run interrupted ""; write_result; exit 1' INT TERM
 trap '' PIPE HUP # goes on where nobody watches any more
 
 # The libraries that drivers may need, too, only where the machine has none that will do.
@@ -181,16 +193,31 @@ for run in "cornell_box backward" "materials backward" "glass_in_fog bidirection
     done
 done
 
-# Files of tests that read nothing of the source tree. The validation layer is on, and what it says fails them, too.
+# Files of tests, which read shaders and kernels from here. The validation layer is on, and what it says fails them, too.
 layer=libVkLayer_khronos_validation.so
 step "validation layer" 30 bash -c 'gzip -dc "$0" >"$1"' "$here/lib/$layer.gz" "$out/layers/$layer"
 printf '{"file_format_version":"1.2.0","layer":{"name":"VK_LAYER_KHRONOS_validation","type":"GLOBAL","library_path":"./%s",%s}}\n' \
     $layer '"api_version":"1.3.239","implementation_version":"1","description":"","instance_extensions":[{"name":"VK_EXT_debug_utils","spec_version":"2"}]' \
     >"$out/layers/validation.json"
-export VK_LAYER_PATH=$out/layers TMPDIR=$out/caches
-for file in kernels/{gpu,program_store,texel_reads,vertex_map,beam_query} \
-    contracts/{accurate_math,sampler,texture,light_selection,light_emission}; do
-    step "test $file" 90 "$here/bin/test_${file%/*}" --source-file="*/${file}_test.cpp" --test-suite-exclude=long
+export VK_LAYER_PATH=$out/layers TMPDIR=$out/caches ETENDUE_SOURCE=$here
+mapfile -t files <"$here/tests.txt"
+at_once=$(nproc) # a test is for the most part the driver compiling one kernel after the other
+[ "$at_once" -le 4 ] || at_once=4
+running=0
+for file in "${files[@]}"; do
+    if [ $running -eq "$at_once" ]; then
+        wait -n
+    else
+        running=$((running + 1))
+    fi
+    (
+        trap 'stop_jobs; exit' TERM
+        perform "test $file" 180 "$here/bin/test_${file%/*}" --source-file="*/${file}_test.cpp" --test-suite-exclude=long
+    ) &
+done
+wait
+for file in "${files[@]}"; do
+    judge "test $file"
     passed=$(found 'test cases: +[0-9]+ . +([0-9]+) passed') failed=$(found 'passed . +([0-9]+) failed')
     messages=0
     while [[ $output = *"${line_end}validation: "* ]]; do

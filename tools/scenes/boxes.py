@@ -3,6 +3,7 @@
 import math
 
 from gltf_builder import Gltf
+from shared import hanging_lamp, walls
 
 
 def cornell_box():
@@ -18,16 +19,8 @@ def cornell_box():
     orange = s.surface("orange", "lambertian", reflectance=[0.72, 0.30, 0.06])
     lamp = s.emitter("lamp", 18, (1, 0.85, 0.62))
     w, h, d = 1.6, 2.4, 1.5
-    s.quad("floor", white, [[-w, 0, d], [w, 0, d], [w, 0, -d], [-w, 0, -d]])
-    s.quad("ceiling", white, [[-w, h, -d], [w, h, -d], [w, h, d], [-w, h, d]])
-    s.quad("back", white, [[-w, 0, -d], [w, 0, -d], [w, h, -d], [-w, h, -d]])
-    s.quad("left", blue, [[-w, 0, d], [-w, 0, -d], [-w, h, -d], [-w, h, d]])
-    s.quad("right", orange, [[w, 0, -d], [w, 0, d], [w, h, d], [w, h, -d]])
-    s.quad(
-        "lamp",
-        lamp,
-        [[-0.45, h - 0.01, -0.35], [0.45, h - 0.01, -0.35], [0.45, h - 0.01, 0.35], [-0.45, h - 0.01, 0.35]],
-    )
+    walls(s, (-w, 0, -d), (w, h, d), floor=white, ceiling=white, back=white, left=blue, right=orange)
+    hanging_lamp(s, lamp, (0, h - 0.01, 0), 0.9, 0.7)
     for name, size, x, z, degrees in (
         ("tall box", [0.85, 1.45, 0.85], -0.62, -0.45, 20),
         ("low box", [0.85, 0.70, 0.85], 0.58, 0.38, -17),
@@ -52,14 +45,8 @@ def caustic_box():
     glass = s.surface("glass", "dielectric", inside="glass")
     mirror = s.surface("mirror", "conductor", reflectance=0.95)
     lamp = s.emitter("lamp", 400, (1, 1, 1))
-    a = 1.0
-    s.quad("floor", white, [[-a, 0, a], [a, 0, a], [a, 0, -a], [-a, 0, -a]])
-    s.quad("ceiling", white, [[-a, 2, -a], [a, 2, -a], [a, 2, a], [-a, 2, a]])
-    s.quad("back", white, [[-a, 0, -a], [a, 0, -a], [a, 2, -a], [-a, 2, -a]])
-    s.quad("front", white, [[a, 0, a], [-a, 0, a], [-a, 2, a], [a, 2, a]])
-    s.quad("left", red, [[-a, 0, a], [-a, 0, -a], [-a, 2, -a], [-a, 2, a]])
-    s.quad("right", green, [[a, 0, -a], [a, 0, a], [a, 2, a], [a, 2, -a]])
-    s.quad("lamp", lamp, [[-0.05, 1.99, -0.05], [0.05, 1.99, -0.05], [0.05, 1.99, 0.05], [-0.05, 1.99, 0.05]])
+    walls(s, (-1, 0, -1), (1, 2, 1), floor=white, ceiling=white, back=white, front=white, left=red, right=green)
+    hanging_lamp(s, lamp, (0, 1.99, 0), 0.1, 0.1)
     s.shape("glass sphere", "sphere", glass, [0.42, 0.4, -0.15], radius=0.4)
     s.shape("mirror sphere", "sphere", mirror, [-0.45, 0.4, -0.5], radius=0.4)
     s.camera([0, 1.1, 0.98], [0, 0.75, -0.3], 80, 1)

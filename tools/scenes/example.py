@@ -12,7 +12,7 @@ def example():
         " take on the colour that glass has after some decimetres (Beer-Lambert); gold and copper follow"
         " Fresnel's equations for their measured refractive indices.",
     )
-    s.environment = {"class": "constant", "radiance": [0.36, 0.37, 0.39]}
+    s.surround([0.36, 0.37, 0.39])
     s.medium("glass", ior=1.52)
     s.medium("green glass", ior=1.52, absorption=[4.5, 0.5, 2.6])
     s.medium("amber glass", ior=1.52, absorption=[0.25, 2.2, 9.0])

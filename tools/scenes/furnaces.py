@@ -1,7 +1,16 @@
 """Surroundings of radiance 1, in which it is known what a pixel must show."""
 
 from gltf_builder import Gltf, facing
-from shared import COPPER, GOLD, SILVER
+from shared import COPPER, GOLD, SILVER, sample
+
+
+def grid(i):
+    """Centre of the i-th of six things of radius 1, in two rows of three."""
+    return [2.3 * (i % 3 - 1), 1.15 - 2.3 * (i // 3), 0]
+
+
+def show_grid(s):
+    s.camera([0, 0, 14], [0, 0, 0], 21, 1.5)
 
 
 def spheres():
@@ -13,7 +22,7 @@ def spheres():
         " reflectance of their refractive indices at normal incidence: silver (0.988, 0.983, 0.980), gold"
         " (0.945, 0.777, 0.374), copper (0.939, 0.618, 0.554); the gold is rough, and is within 2 % of that.",
     )
-    s.environment = {"class": "constant", "radiance": 1}
+    s.surround(1)
     s.medium("glass", ior=1.5)
     s.medium("tinted glass", ior=1.5, absorption=[0.9, 0.35, 0.10])
     kinds = [
@@ -25,10 +34,8 @@ def spheres():
         s.surface("copper", "conductor", **COPPER),
     ]
     for i, kind in enumerate(kinds):
-        s.shape(
-            s.materials[kind]["name"], "sphere", kind, [2.3 * (i % 3 - 1), 1.15 - 2.3 * (i // 3), 0], radius=1
-        )
-    s.camera([0, 0, 14], [0, 0, 0], 21, 1.5)
+        sample(s, "sphere", kind, grid(i), radius=1)
+    show_grid(s)
     return s
 
 
@@ -39,7 +46,7 @@ def furnace_smooth():
         " a thin pane, white glossy paint, and a mirror cylinder. All are invisible: every pixel is 1 within"
         " 0.2 %.",
     )
-    s.environment = {"class": "constant", "radiance": 1}
+    s.surround(1)
     s.medium("glass", ior=1.5)
     for i, (shape, kind, parameters) in enumerate(
         (
@@ -55,14 +62,8 @@ def furnace_smooth():
             ),
         )
     ):
-        s.shape(
-            s.materials[kind]["name"],
-            shape,
-            kind,
-            matrix=facing([2.3 * (i % 3 - 1), 1.15 - 2.3 * (i // 3), 0], [0.5, 0.3, 1]),
-            **parameters,
-        )
-    s.camera([0, 0, 14], [0, 0, 0], 21, 1.5)
+        sample(s, shape, kind, matrix=facing(grid(i), [0.5, 0.3, 1]), **parameters)
+    show_grid(s)
     return s
 
 
@@ -73,7 +74,7 @@ def furnace_rough():
         " facets, of GGX width 0.1, 0.3 and 0.7 from left to right, in a constant surround of radiance 1:"
         " invisible, every pixel is 1 within 0.5 %.",
     )
-    s.environment = {"class": "constant", "radiance": 1}
+    s.surround(1)
     s.medium("glass", ior=1.5)
     for i, alpha in enumerate((0.1, 0.3, 0.7)):
         metal = s.surface(
@@ -82,9 +83,9 @@ def furnace_rough():
         glass = s.surface(
             f"glass, alpha {alpha}", "dielectric", inside="glass", alpha=alpha, multiscatter=True
         )
-        s.shape(f"mirror {i}", "sphere", metal, [2.3 * (i - 1), 1.15, 0], radius=1)
-        s.shape(f"glass {i}", "sphere", glass, [2.3 * (i - 1), -1.15, 0], radius=1)
-    s.camera([0, 0, 14], [0, 0, 0], 21, 1.5)
+        s.shape(f"mirror {i}", "sphere", metal, grid(i), radius=1)
+        s.shape(f"glass {i}", "sphere", glass, grid(i + 3), radius=1)
+    show_grid(s)
     return s
 
 
@@ -105,6 +106,6 @@ def furnace_closed():
         (0, s.surface("mirror", "conductor", reflectance=1)),
         (1.2, s.surface("glass", "dielectric", inside="glass")),
     ):
-        s.shape(s.materials[kind]["name"], "sphere", kind, [x, 0, 0], radius=0.5)
+        sample(s, "sphere", kind, [x, 0, 0], radius=0.5)
     s.camera([0, 0, 3.5], [0, 0, 0], 45, 1.5)
     return s

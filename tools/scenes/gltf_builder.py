@@ -97,6 +97,9 @@ class Gltf:
         self.media.append({"name": name, "class": "homogeneous", **parameters})
         return name
 
+    def surround(self, radiance):
+        self.environment = {"class": "constant", "radiance": radiance}
+
     # Objects.
     def shape(self, name, class_name, material, translation=None, matrix=None, **parameters):
         node = {

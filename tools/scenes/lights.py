@@ -4,7 +4,7 @@ import math
 import random
 
 from gltf_builder import Gltf, facing, look_along
-from shared import COPPER, OCTAHEDRON, SILVER
+from shared import COPPER, OCTAHEDRON, SILVER, upright, walls
 
 
 def lamps():
@@ -25,8 +25,7 @@ def lamps():
     pane = s.surface("pane", "thin_dielectric", ior=1.5)
     metal = s.surface("rail", "conductor", alpha=0.15, **SILVER)
     lamp = s.emitter("square lamp", 281.25)
-    s.quad("floor", floor, [[-6, 0, 5], [6, 0, 5], [6, 0, -2], [-6, 0, -2]])
-    s.quad("back", wall, [[-6, 0, -2], [6, 0, -2], [6, 4, -2], [-6, 4, -2]])
+    walls(s, (-6, 0, -2), (6, 4, 5), floor=floor, back=wall)
     for x in (-1.3, 1.3):
         s.box("partition", dark, [0.06, 3.2, 3.4], translation=[x, 0, -0.3])
     down = [0, -1, 0]
@@ -43,10 +42,9 @@ def lamps():
             (1, 0.72, 0.40),
             spot={"innerConeAngle": 0.1, "outerConeAngle": 0.7},
         )
-    s.shape("pane", "rectangle", pane, matrix=facing([0, 1.3, 0], [0, 1, 0], (0, 0, -1)), size=[1.7, 1.7])
-    sideways = facing([0, 0, 0], [1, 0, 0])
+    s.shape("pane", "rectangle", pane, matrix=upright([0, 1.3, 0]), size=[1.7, 1.7])
     for z in (-0.85, 0.85):
-        s.shape("rail", "cylinder", metal, matrix=sideways[:12] + [0, 1.3, z, 1], radius=0.025, height=1.75)
+        s.shape("rail", "cylinder", metal, matrix=facing([0, 1.3, z], [1, 0, 0]), radius=0.025, height=1.75)
     for x in (-2.6, 0, 2.6):
         s.shape("ball", "sphere", ball, [x + 0.45, 0.22, 0.35], radius=0.22)
         s.box("block", block, [0.3, 0.75, 0.3], translation=[x - 0.5, 0, -0.3])
@@ -59,15 +57,10 @@ def many_lights():
     floor = s.surface("floor", "lambertian", reflectance=[0.62, 0.60, 0.57])
     wall = s.surface("wall", "lambertian", reflectance=[0.70, 0.68, 0.66])
     metal = s.surface("pillar", "conductor", alpha=0.25, **COPPER)
-    s.quad("floor", floor, [[-6, 0, 8], [6, 0, 8], [6, 0, -12], [-6, 0, -12]])
-    s.quad("back", wall, [[-6, 0, -12], [6, 0, -12], [6, 5, -12], [-6, 5, -12]])
-    s.quad("left", wall, [[-6, 0, 8], [-6, 0, -12], [-6, 5, -12], [-6, 5, 8]])
-    s.quad("right", wall, [[6, 0, -12], [6, 0, 8], [6, 5, 8], [6, 5, -12]])
-    s.quad("ceiling", wall, [[-6, 5, -12], [6, 5, -12], [6, 5, 8], [-6, 5, 8]])
-    upright = facing([0, 0, 0], [0, 1, 0], (0, 0, -1))
+    walls(s, (-6, 0, -12), (6, 5, 8), floor=floor, back=wall, left=wall, right=wall, ceiling=wall)
     for z in (-8.5, -4.5, -0.5, 3.5):
         for x in (-3.6, 3.6):
-            s.shape("pillar", "cylinder", metal, matrix=upright[:12] + [x, 2.5, z, 1], radius=0.3, height=5)
+            s.shape("pillar", "cylinder", metal, matrix=upright([x, 2.5, z]), radius=0.3, height=5)
     r, luminance = 0.08, 4.0
     colors = (
         ("amber", (1, 0.50, 0.12)),

@@ -3,6 +3,7 @@
 import math
 
 from gltf_builder import Gltf, look_along
+from shared import hanging_lamp, walls
 
 
 def glass_in_fog():
@@ -19,10 +20,9 @@ def glass_in_fog():
     border = s.surface("border of the fog", "boundary", inside="fog")
     glass = s.surface("glass", "dielectric", inside="glass", outside="fog")
     lamp = s.emitter("lamp", 1500, (1, 0.95, 0.88))
-    s.quad("floor", grey, [[-3, 0, 3], [3, 0, 3], [3, 0, -3], [-3, 0, -3]])
+    walls(s, (-3, 0, -3), (3, 0, 3), floor=grey)
     s.box("fog", border, [2.6, 2.6, 2.6], translation=[0, 0.02, 0])
-    a = 0.035
-    s.quad("lamp", lamp, [[-a, 2.4, -a], [a, 2.4, -a], [a, 2.4, a], [-a, 2.4, a]])
+    hanging_lamp(s, lamp, (0, 2.4, 0), 0.07, 0.07)
     s.shape("glass sphere", "sphere", glass, [0, 1.5, 0], radius=0.35)
     s.camera([0, 1.9, 6.5], [0, 1.2, 0], 26, 1)
     return s
@@ -81,7 +81,7 @@ def cloud():
         " shades the next; the flat base is grey, with a little green of the plain, and the shadow below has soft edges. Where the"
         " cloud is thin, at its fringes, the sky shines through.",
     )
-    s.environment = {"class": "constant", "radiance": [0.23, 0.38, 0.72]}
+    s.surround([0.23, 0.38, 0.72])
     s.files["cloud.nrrd"] = cumulus()
     s.medium(
         "cloud",

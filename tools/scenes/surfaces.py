@@ -1,7 +1,21 @@
 """Samples of materials: rows of spheres on a backdrop."""
 
 from gltf_builder import Gltf, facing
-from shared import backdrop
+from shared import backdrop, sample, upright
+
+
+def studio(s, reflectance, lamp, key=([-2.5, 5, 2.5], [0.45, -1, -0.5], [4, 2]), strip_width=0.7, steps=10):
+    """A backdrop of that reflectance below a lamp on the left (`key`: place, direction, size) and a strip on the right;
+    `lamp`: their luminance, and their colour."""
+    backdrop(s, s.surface("floor", "lambertian", reflectance=reflectance), 20, 8, -4.5, 7, 2, steps)
+    light = s.emitter("lamp", *lamp)
+    position, direction, size = key
+    s.shape("lamp", "rectangle", light, matrix=facing(position, direction), size=size)
+    s.shape("strip", "rectangle", light, matrix=facing([5.5, 2.5, 3], [-1, -0.3, -0.6]), size=[strip_width, 4])
+
+
+def show_two_rows(s):
+    s.camera([0, 4.2, 9.0], [0, 0.28, 0.3], 23, 1.8)
 
 
 def materials():
@@ -12,12 +26,8 @@ def materials():
         " glass darken, as light that meets more than one facet is lost; no sphere is brighter than what it"
         " mirrors.",
     )
-    s.environment = {"class": "constant", "radiance": [0.32, 0.34, 0.38]}
-    floor = s.surface("floor", "lambertian", reflectance=0.42)
-    backdrop(s, floor, 20, 8, -4.5, 7, 2)
-    lamp = s.emitter("lamp", 6, (1, 0.95, 0.88))
-    s.shape("lamp", "rectangle", lamp, matrix=facing([-2.5, 5, 2.5], [0.45, -1, -0.5]), size=[4, 2])
-    s.shape("strip", "rectangle", lamp, matrix=facing([5.5, 2.5, 3], [-1, -0.3, -0.6]), size=[0.7, 4])
+    s.surround([0.32, 0.34, 0.38])
+    studio(s, 0.42, (6, (1, 0.95, 0.88)))
     columns = 6
     for row, (name, color, metallic, transmission) in enumerate(
         (
@@ -55,12 +65,8 @@ def finishes():
         " rim at grazing angles; resin with a golden reflection; a paper globe that passes on three quarters of the diffuse"
         " light, with a lamp inside.",
     )
-    s.environment = {"class": "constant", "radiance": [0.22, 0.23, 0.26]}
-    floor = s.surface("floor", "lambertian", reflectance=0.35)
-    backdrop(s, floor, 20, 8, -4.5, 7, 2)
-    lamp = s.emitter("lamp", 7, (1, 0.95, 0.88))
-    s.shape("lamp", "rectangle", lamp, matrix=facing([-2.5, 5, 2.5], [0.45, -1, -0.5]), size=[4, 2])
-    s.shape("strip", "rectangle", lamp, matrix=facing([5.5, 2.5, 3], [-1, -0.3, -0.6]), size=[0.7, 4])
+    s.surround([0.22, 0.23, 0.26])
+    studio(s, 0.35, (7, (1, 0.95, 0.88)))
     paint, steel, cloth, resin = [0.42, 0.02, 0.02], [0.62, 0.61, 0.60], [0.10, 0.02, 0.16], [0.05, 0.05, 0.06]
     paper = [0.85, 0.80, 0.70]
     rows = (
@@ -90,14 +96,13 @@ def finishes():
             ),
         ),
     )
-    upright = facing([0, 0, 0], [0, 1, 0], (0, 0, -1))
     for row, kinds in enumerate(rows):
         for i, kind in enumerate(kinds):
             x, z = 1.15 * (i - 2), -0.35 + 1.5 * row
-            s.shape(s.materials[kind]["name"], "sphere", kind, matrix=upright[:12] + [x, 0.46, z, 1], radius=0.46)
+            sample(s, "sphere", kind, matrix=upright([x, 0.46, z]), radius=0.46)
     bulb = s.emitter("bulb", 8, (1, 0.8, 0.55))
     s.shape("bulb", "sphere", bulb, [2.3, 0.46, 1.15], radius=0.12)
-    s.camera([0, 4.2, 9.0], [0, 0.28, 0.3], 23, 1.8)
+    show_two_rows(s)
     return s
 
 
@@ -109,12 +114,8 @@ def films():
         " left: soap films of 100, 300 and 500 nm around air, coloured in their rims; black plastic with glTF's"
         " iridescence of 400 nm; glass with a film of index 1.22 and 112 nm, which mirrors less than bare glass.",
     )
-    s.environment = {"class": "constant", "radiance": 0.25}
-    floor = s.surface("floor", "lambertian", reflectance=0.12)
-    backdrop(s, floor, 20, 8, -4.5, 7, 2, steps=40)
-    lamp = s.emitter("lamp", 5)
-    s.shape("lamp", "rectangle", lamp, matrix=facing([-3, 5, 3], [0.5, -1, -0.5]), size=[5, 3])
-    s.shape("strip", "rectangle", lamp, matrix=facing([5.5, 2.5, 3], [-1, -0.3, -0.6]), size=[1.5, 4])
+    s.surround(0.25)
+    studio(s, 0.12, (5,), key=([-3, 5, 3], [0.5, -1, -0.5], [5, 3]), strip_width=1.5, steps=40)
     s.medium("glass", ior=1.5)
     chromium = {"eta": {"name": "Cr eta"}, "k": {"name": "Cr k"}}
     rows = (
@@ -130,6 +131,6 @@ def films():
     )
     for row, kinds in enumerate(rows):
         for i, kind in enumerate(kinds):
-            s.shape(s.materials[kind]["name"], "sphere", kind, [1.15 * (i - 2), 0.5, -0.35 + 1.5 * row], radius=0.46)
-    s.camera([0, 4.2, 9.0], [0, 0.28, 0.3], 23, 1.8)
+            sample(s, "sphere", kind, [1.15 * (i - 2), 0.5, -0.35 + 1.5 * row], radius=0.46)
+    show_two_rows(s)
     return s

@@ -3,6 +3,7 @@
 import math
 
 from gltf_builder import Gltf
+from shared import hanging_lamp, walls
 
 
 def pool():
@@ -17,11 +18,7 @@ def pool():
     water = s.surface("water", "dielectric", inside="water")
     lamp = s.emitter("lamp", 300, (1, 1, 1))
     a, rim = 1.5, 0.15
-    s.quad("floor", tiles, [[-a, -1, a], [a, -1, a], [a, -1, -a], [-a, -1, -a]])
-    s.quad("back", tiles, [[-a, -1, -a], [a, -1, -a], [a, rim, -a], [-a, rim, -a]])
-    s.quad("front", tiles, [[a, -1, a], [-a, -1, a], [-a, rim, a], [a, rim, a]])
-    s.quad("left", tiles, [[-a, -1, a], [-a, -1, -a], [-a, rim, -a], [-a, rim, a]])
-    s.quad("right", tiles, [[a, -1, -a], [a, -1, a], [a, rim, a], [a, rim, -a]])
+    walls(s, (-a, -1, -a), (a, rim, a), floor=tiles, back=tiles, front=tiles, left=tiles, right=tiles)
     waves = [(0.012, 5.1, 2.3, 0.4), (0.010, -3.7, 6.4, 1.9), (0.006, 9.8, -5.2, 0.7), (0.004, 3.1, 13.0, 2.6)]
     n = 64
     positions, triangles = [], []
@@ -34,7 +31,7 @@ def pool():
             k = j * (n + 1) + i
             triangles += [[k, k + n + 1, k + n + 2], [k, k + n + 2, k + 1]]
     s.mesh("water", water, positions, triangles)
-    s.quad("lamp", lamp, [[-0.1, 3, -0.1], [0.1, 3, -0.1], [0.1, 3, 0.1], [-0.1, 3, 0.1]])
+    hanging_lamp(s, lamp, (0, 3, 0), 0.2, 0.2)
     s.camera([0, 2.6, 3.4], [0, -0.6, 0], 45, 1)
     return s
 
@@ -74,10 +71,9 @@ def iced_water():
     ice = s.surface("ice", "dielectric", inside="ice", priority=2)
     water = s.surface("water", "dielectric", inside="water", priority=1)
     lamp = s.emitter("lamp", 4000, (1, 0.96, 0.9))
-    s.environment = {"class": "constant", "radiance": [0.25, 0.3, 0.4]}
+    s.surround([0.25, 0.3, 0.4])
     s.quad("table", table, [[-1, 0, 1], [1, 0, 1], [1, 0, -1], [-1, 0, -1]])
-    a = 0.015
-    s.quad("lamp", lamp, [[-0.2 - a, 0.5, -0.1 - a], [-0.2 + a, 0.5, -0.1 - a], [-0.2 + a, 0.5, -0.1 + a], [-0.2 - a, 0.5, -0.1 + a]])
+    hanging_lamp(s, lamp, (-0.2, 0.5, -0.1), 0.03, 0.03)
     foot, floor, rim, level, wall = 0.0005, 0.008, 0.1, 0.078, 0.003
     bottom, top = 0.032, 0.04  # outer radii
 
