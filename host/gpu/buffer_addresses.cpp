@@ -15,6 +15,12 @@ struct Block {
     std::string name;
 };
 
+// Of a vector in a block.
+struct Component {
+    SpirvWords access;  // the access chain that names it
+    uint32_t vector;    // type
+};
+
 class Rewriter {
   public:
     explicit Rewriter(const Spirv& spirv) : in_(split_spirv(spirv)) {
@@ -51,6 +57,13 @@ class Rewriter {
         for (const SpirvWords& w : in_.instructions) switch (spv::Op(w[0])) {
                 case spv::OpTypeRuntimeArray:
                     run_time_arrays_.insert(w[1]);
+                    [[fallthrough]];
+                case spv::OpTypeArray:
+                case spv::OpTypeMatrix:
+                    elements_[w[1]] = w[2];
+                    break;
+                case spv::OpConstant:
+                    constants_[w[2]] = w[3];
                     break;
                 case spv::OpTypeStruct:
                     struct_members_[w[1]] = {w.begin() + 2, w.end()};
@@ -66,6 +79,7 @@ class Rewriter {
                     if (w[2] == 64) has_wide_types_ = true;
                     break;
                 case spv::OpTypeVector:
+                    vectors_[w[1]] = w[2];
                     if (w[2] == uint_ && w[3] == 2) uvec2_ = w[1];
                     break;
                 case spv::OpName:
@@ -118,17 +132,22 @@ class Rewriter {
         put(spirv_instruction(spv::OpTypePointer, {to_table, spv::StorageClassStorageBuffer, table_type_}));
         put(spirv_instruction(spv::OpVariable, {to_table, table_, spv::StorageClassStorageBuffer}));
         put(spirv_instruction(spv::OpTypePointer,
-                        {table_pointer_ = new_id(), spv::StorageClassStorageBuffer, uvec2_}));
+                              {table_pointer_ = new_id(), spv::StorageClassStorageBuffer, uvec2_}));
         put(spirv_instruction(spv::OpTypePointer, {to_address, spv::StorageClassPrivate, uvec2_}));
         for (uint32_t i = 0; i < blocks_.size(); ++i) {
-            put(spirv_instruction(spv::OpVariable, {to_address, blocks_[i].address, spv::StorageClassPrivate}));
+            put(spirv_instruction(spv::OpVariable,
+                                  {to_address, blocks_[i].address, spv::StorageClassPrivate}));
             put(spirv_instruction(spv::OpConstant, {uint_, new_id(), i}));
             indices_.push_back(bound_ - 1);
         }
         // Of every type that a pointer into a block may have; few are used, which costs nothing.
-        for (const auto& [pointer, pointee] : pointees_)
-            put(spirv_instruction(spv::OpTypePointer, {by_address_[pointee] = new_id(),
-                                                 spv::StorageClassPhysicalStorageBuffer, pointee}));
+        std::set<uint32_t> types;
+        for (const auto& [pointer, pointee] : pointees_) types.insert(pointee);
+        for (const auto& [vector, component] : vectors_)
+            if (types.count(component)) types.insert(vector);
+        for (const uint32_t type : types)
+            put(spirv_instruction(spv::OpTypePointer, {by_address_[type] = new_id(),
+                                                       spv::StorageClassPhysicalStorageBuffer, type}));
     }
 
     void decorate_table() {
@@ -159,14 +178,66 @@ class Rewriter {
         words.insert(words.begin() + long(mask_at) + 1, has_wide_types_ ? 8 : 4);
     }
 
+    void rewrite_access(SpirvWords& chain) {
+        uint32_t type = 0;  // of what the chain starts at
+        if (const Block* block = find_block(chain[3])) {
+            const uint32_t address = new_id(), pointer = new_id();
+            put(spirv_instruction(spv::OpLoad, {uvec2_, address, block->address}));
+            put(spirv_instruction(spv::OpBitcast, {by_address_.at(block->type), pointer, address}));
+            chain[3] = pointer;
+            type = block->type;
+        } else if (const auto from = addressed_.find(chain[3]); from != addressed_.end()) {
+            type = from->second;
+        } else {
+            return;
+        }
+        const uint32_t pointee = pointees_.at(chain[1]);
+        chain[1] = by_address_.at(pointee);
+        addressed_[chain[2]] = pointee;
+        if (const uint32_t vector = vector_of_component(chain, type)) components_[chain[2]] = {chain, vector};
+    }
+
+    // The type of the vector of which an access chain into `type` names a component; 0 where it names none.
+    uint32_t vector_of_component(const SpirvWords& chain, uint32_t type) const {
+        for (size_t i = 4; i < chain.size(); ++i) {
+            if (vectors_.count(type)) return type;
+            const auto members = struct_members_.find(type);
+            type = members == struct_members_.end() ? elements_.at(type)
+                                                    : members->second.at(constants_.at(chain[i]));
+        }
+        return 0;
+    }
+
+    // By way of the whole vector: for any component that is read by address Mesa 22.3 takes the first one,
+    // where the vector has been read or written before.
+    void load_component(const SpirvWords& load) {
+        const Component& component = components_.at(load[3]);
+        SpirvWords chain = component.access, whole = load;
+        const uint32_t index = chain.back(), pointer = new_id(), vector = new_id();
+        chain.pop_back();
+        chain[1] = by_address_.at(component.vector);
+        chain[2] = whole[3] = pointer;
+        whole[1] = component.vector;
+        whole[2] = vector;
+        put(chain);
+        put(whole);
+        put(spirv_instruction(spv::OpVectorExtractDynamic, {load[1], load[2], vector, index}));
+    }
+
     void rewrite(spv::Op op, SpirvWords& words) {
+        // Variables of the function stand before all else in its first block.
+        if (at_start_ && op != spv::OpVariable) {
+            load_addresses();
+            at_start_ = false;
+        }
         switch (op) {
             case spv::OpMemoryModel:
                 words[1] = spv::AddressingModelPhysicalStorageBuffer64;
                 break;
             case spv::OpCapability:
                 if (!has_capability_)
-                    put(spirv_instruction(spv::OpCapability, {spv::CapabilityPhysicalStorageBufferAddresses}));
+                    put(spirv_instruction(spv::OpCapability,
+                                          {spv::CapabilityPhysicalStorageBufferAddresses}));
                 has_capability_ = true;
                 if (words[1] == spv::CapabilityPhysicalStorageBufferAddresses) return;
                 break;
@@ -192,19 +263,11 @@ class Rewriter {
                 break;
             case spv::OpAccessChain:
             case spv::OpInBoundsAccessChain:
-                if (const Block* block = find_block(words[3])) {
-                    const uint32_t address = new_id(), pointer = new_id();
-                    put(spirv_instruction(spv::OpLoad, {uvec2_, address, block->address}));
-                    put(spirv_instruction(spv::OpBitcast, {by_address_.at(block->type), pointer, address}));
-                    words[3] = pointer;
-                } else if (!addressed_.count(words[3])) {
-                    break;
-                }
-                words[1] = by_address_.at(pointees_.at(words[1]));
-                addressed_.insert(words[2]);
+                rewrite_access(words);
                 break;
             case spv::OpLoad:
                 if (addressed_.count(words[3])) align(words, 4);
+                if (components_.count(words[3])) return load_component(words);
                 break;
             case spv::OpStore:
                 if (addressed_.count(words[1])) align(words, 3);
@@ -213,16 +276,7 @@ class Rewriter {
                 break;
         }
         put(words);
-        // Variables of the function stand before all else in its first block.
-        if (op == spv::OpLabel && in_entry_)
-            at_start_ = true, in_entry_ = false;
-        else if (at_start_ && op != spv::OpVariable) {
-            const SpirvWords first = std::move(out_.back());
-            out_.pop_back();
-            load_addresses();
-            put(first);
-            at_start_ = false;
-        }
+        if (op == spv::OpLabel && in_entry_) at_start_ = true, in_entry_ = false;
     }
 
     SpirvModule in_;
@@ -230,15 +284,19 @@ class Rewriter {
     uint32_t bound_ = 0, binding_ = 0;
     std::set<uint32_t> run_time_arrays_;
     std::map<uint32_t, SpirvWords> struct_members_;
-    std::map<uint32_t, uint32_t> pointees_;  // of pointers to storage buffers
+    std::map<uint32_t, uint32_t> elements_;   // of arrays and matrices: type -> type
+    std::map<uint32_t, uint32_t> vectors_;    // type -> type of the components
+    std::map<uint32_t, uint32_t> constants_;  // id -> value, its first word
+    std::map<uint32_t, uint32_t> pointees_;   // of pointers to storage buffers
     std::map<uint32_t, uint32_t> bindings_;
     std::map<uint32_t, std::string> names_;
     bool has_wide_types_ = false;
     std::vector<Block> blocks_;
     uint32_t uint_ = 0, uvec2_ = 0, table_ = 0, table_type_ = 0, table_pointer_ = 0;
-    std::vector<uint32_t> indices_;            // constants 0, 1, …
-    std::map<uint32_t, uint32_t> by_address_;  // pointee -> pointer by address
-    std::set<uint32_t> addressed_;             // pointers by address
+    std::vector<uint32_t> indices_;             // constants 0, 1, …
+    std::map<uint32_t, uint32_t> by_address_;   // pointee -> pointer by address
+    std::map<uint32_t, uint32_t> addressed_;    // pointers by address -> pointee
+    std::map<uint32_t, Component> components_;  // such pointers to components
     uint32_t entry_ = 0;
     bool has_capability_ = false, has_decorations_ = false, in_entry_ = false, at_start_ = false;
 };

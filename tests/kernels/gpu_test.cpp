@@ -1,4 +1,6 @@
 // The GPU layer: buffers, reflection, kernels, push constants, indirect dispatch, timing.
+#include <array>
+#include <glm/glm.hpp>
 #include <numeric>
 
 #include "host/error.h"
@@ -53,6 +55,39 @@ TEST_CASE("a kernel reads buffers and push constants and writes its results") {
     const auto result = out.read_array<float>(1000);
     for (int i = 0; i < 1000; ++i) REQUIRE(result[i] == 3.0f * float(i));
     CHECK(timings.at("scale_input").dispatches == 1);
+}
+
+TEST_CASE("components of a vector in a buffer are what the vector holds, wherever it was read or written before") {
+    Device& device = test_device();
+    std::vector<uint32_t> input(4 * 64);
+    std::iota(input.begin(), input.end(), 0u);
+    Buffer in = create_buffer(device, input, "input");
+    Buffer out(device, 64 * 4 * 16, "output");
+    // The first line of main reads a block: addresses must be there before it.
+    const Kernel kernel = make_test_kernel("read_components", R"(
+        layout(local_size_x = 64) in;
+        struct Row { uvec4 whole, parts, own, own_parts; };
+        layout(scalar, set = 0) readonly buffer Input { uvec4 values[]; };
+        layout(scalar, set = 0) buffer Output { Row results[]; };
+        void main() {
+            uint zero = values[0].x, i = gl_GlobalInvocationID.x;
+            results[i].whole = values[i];
+            uvec4 v = values[i];
+            results[i].parts = uvec4(v.x, values[i].y, values[i].z, values[i][3u - zero]);
+            results[i].own = v + 1u;
+            results[i].own.y += 5u;
+            results[i].own_parts = uvec4(results[i].own.w, results[i].own.z, results[i].own.y, results[i].own.x);
+        }
+    )",
+                                           {{"Input", &in}, {"Output", &out}});
+    CommandList list(device);
+    list.dispatch(kernel, 1);
+    list.run();
+    const auto rows = out.read_array<std::array<glm::uvec4, 4>>(64);
+    for (uint32_t i = 0; i < rows.size(); ++i) {
+        const glm::uvec4 v = 4 * i + glm::uvec4(0, 1, 2, 3);
+        CHECK(rows[i] == std::array<glm::uvec4, 4>{v, v, v + glm::uvec4(1, 6, 1, 1), {4 * i + 4, 4 * i + 3, 4 * i + 7, 4 * i + 1}});
+    }
 }
 
 TEST_CASE(
