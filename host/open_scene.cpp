@@ -27,6 +27,11 @@ OpenedScene open_scene(const SceneChoice& choice) {
     OpenedScene opened;
     opened.device = device.get();
     opened.scene = compile_scene(*opened.device, description, scene_options(choice));
+    const DeviceDescription& used = opened.device->description;
+    if (used.max_loop_turns > 0)
+        opened.scene.warnings.push_back(
+            fmt::format("{} ends loops after {} turns: long paths, and rays past many surfaces or vertices, may lack light",
+                        used.driver, used.max_loop_turns));
     return opened;
 }
 

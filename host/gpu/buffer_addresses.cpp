@@ -15,6 +15,12 @@ struct Block {
     std::string name;
 };
 
+// Of a vector in a block.
+struct Component {
+    SpirvWords access;  // the access chain that names it
+    uint32_t vector;    // type
+};
+
 class Rewriter {
   public:
     explicit Rewriter(const Spirv& spirv)
@@ -87,12 +93,15 @@ class Rewriter {
             out_.put(spv::OpConstant, {uint_, indices_[i], i});
         }
         // Of every type that a pointer into a block may have; few are used, which costs nothing.
-        for (const auto& [pointer, type] : declared_.types) {
-            if (type.op != spv::OpTypePointer || type.operands[0] != spv::StorageClassStorageBuffer) continue;
-            const uint32_t pointee = type.operands[1];
+        std::set<uint32_t> pointees;
+        for (const auto& [pointer, type] : declared_.types)
+            if (type.op == spv::OpTypePointer && type.operands[0] == spv::StorageClassStorageBuffer)
+                pointees.insert(type.operands[1]);
+        for (const auto& [vector, type] : declared_.types)
+            if (type.op == spv::OpTypeVector && pointees.count(type.operands[0])) pointees.insert(vector);
+        for (const uint32_t pointee : pointees)
             out_.put(spv::OpTypePointer,
                      {by_address_[pointee] = out_.new_id(), spv::StorageClassPhysicalStorageBuffer, pointee});
-        }
     }
 
     void decorate_table() {
@@ -121,6 +130,51 @@ class Rewriter {
         if (words[mask_at] & spv::MemoryAccessAlignedMask) return;
         words[mask_at] |= spv::MemoryAccessAlignedMask;
         words.insert(words.begin() + long(mask_at) + 1, alignment_);
+    }
+
+    void rewrite_access(SpirvWords& chain) {
+        uint32_t type = 0;  // of what the chain starts at
+        if (const Block* block = find_block(chain[3])) {
+            const uint32_t address = out_.new_id(), pointer = out_.new_id();
+            out_.put(spv::OpLoad, {uvec2_, address, block->address});
+            out_.put(spv::OpBitcast, {by_address_.at(block->type), pointer, address});
+            chain[3] = pointer;
+            type = block->type;
+        } else if (const auto from = addressed_.find(chain[3]); from != addressed_.end()) {
+            type = from->second;
+        } else {
+            return;
+        }
+        const uint32_t pointee = declared_.types.at(chain[1]).operands[1];
+        chain[1] = by_address_.at(pointee);
+        addressed_[chain[2]] = pointee;
+        if (const uint32_t vector = vector_of_component(chain, type)) components_[chain[2]] = {chain, vector};
+    }
+
+    // The type of the vector of which an access chain into `type` names a component; 0 where it names none.
+    uint32_t vector_of_component(const SpirvWords& chain, uint32_t type) const {
+        for (size_t i = 4; i < chain.size(); ++i) {
+            const SpirvType& t = declared_.types.at(type);
+            if (t.op == spv::OpTypeVector) return type;
+            type = t.op == spv::OpTypeStruct ? t.operands.at(declared_.constants.at(chain[i])) : t.operands[0];
+        }
+        return 0;
+    }
+
+    // By way of the whole vector: for any component that is read by address Mesa 22.3 takes the first one,
+    // where the vector has been read or written before.
+    void load_component(const SpirvWords& load) {
+        const Component& component = components_.at(load[3]);
+        SpirvWords chain = component.access, whole = load;
+        const uint32_t index = chain.back(), pointer = out_.new_id(), vector = out_.new_id();
+        chain.pop_back();
+        chain[1] = by_address_.at(component.vector);
+        chain[2] = whole[3] = pointer;
+        whole[1] = component.vector;
+        whole[2] = vector;
+        out_.instructions.push_back(chain);
+        out_.instructions.push_back(whole);
+        out_.put(spv::OpVectorExtractDynamic, {load[1], load[2], vector, index});
     }
 
     void rewrite(spv::Op op, SpirvWords& words) {
@@ -158,19 +212,11 @@ class Rewriter {
                 break;
             case spv::OpAccessChain:
             case spv::OpInBoundsAccessChain:
-                if (const Block* block = find_block(words[3])) {
-                    const uint32_t address = out_.new_id(), pointer = out_.new_id();
-                    out_.put(spv::OpLoad, {uvec2_, address, block->address});
-                    out_.put(spv::OpBitcast, {by_address_.at(block->type), pointer, address});
-                    words[3] = pointer;
-                } else if (!addressed_.count(words[3])) {
-                    break;
-                }
-                words[1] = by_address_.at(declared_.types.at(words[1]).operands[1]);
-                addressed_.insert(words[2]);
+                rewrite_access(words);
                 break;
             case spv::OpLoad:
                 if (addressed_.count(words[3])) align(words, 4);
+                if (components_.count(words[3])) return load_component(words);
                 break;
             case spv::OpStore:
                 if (addressed_.count(words[1])) align(words, 3);
@@ -188,9 +234,10 @@ class Rewriter {
     uint32_t binding_ = 0;    // of the table
     uint32_t alignment_ = 4;  // of the widest scalar
     uint32_t uint_ = 0, uvec2_ = 0, table_ = 0, table_type_ = 0, table_pointer_ = 0;
-    std::vector<uint32_t> indices_;            // constants 0, 1, …
-    std::map<uint32_t, uint32_t> by_address_;  // pointee -> pointer by address
-    std::set<uint32_t> addressed_;             // pointers by address
+    std::vector<uint32_t> indices_;             // constants 0, 1, …
+    std::map<uint32_t, uint32_t> by_address_;   // pointee -> pointer by address
+    std::map<uint32_t, uint32_t> addressed_;    // pointers by address -> pointee
+    std::map<uint32_t, Component> components_;  // such pointers to components
     uint32_t entry_ = 0;
     bool has_capability_ = false, has_decorations_ = false, in_entry_ = false, at_start_ = false;
 };

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "host/error.h"
+#include "host/gpu/loop_turns.h"
 #include "host/gpu/program_store.h"
 
 namespace etendue {
@@ -306,6 +307,7 @@ std::unique_ptr<Device> create_device(const DeviceOptions& given) {
     pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
     pool.queueFamilyIndex = device->queue_family;
     check(vkCreateCommandPool(device->handle, &pool, nullptr, &device->command_pool), "vkCreateCommandPool");
+    device->description.max_loop_turns = find_max_loop_turns(*device);
     return device;
 }
 

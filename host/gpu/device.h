@@ -27,6 +27,7 @@ struct DeviceDescription {
     uint64_t max_texels = 0;
     uint32_t max_texel_buffers = 0;
     uint64_t memory = 0;               // bytes of the largest device-local heap
+    uint32_t max_loop_turns = 0;       // host/gpu/loop_turns.h; 0 = no end. Known of a device that was created
     std::vector<std::string> missing;  // what étendue needs and the device lacks; empty = usable
 };
 

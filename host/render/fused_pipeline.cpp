@@ -7,6 +7,8 @@ namespace etendue {
 namespace {
 
 constexpr double band_seconds = 0.025;  // of a dispatch, where somebody may interrupt
+// Turns of loops that a path takes on average, generously; most are steps through the hierarchy.
+constexpr uint32_t turns_a_path = 1000;
 
 }  // namespace
 
@@ -15,8 +17,11 @@ Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const Rende
                                        SpectralPasses& spectra, const BufferTable& film)
     : Pipeline(s, forward, spectra) {
     trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", film, techniques.backward_defines());
-    // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
-    pixels_a_group = trace_paths.group_size() * (device.description.type == "CPU" ? 8 : 1);
+    // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight. Where the driver
+    // ends loops early a lane gets no more paths than fit.
+    const uint32_t turns = device.description.max_loop_turns;
+    pixels_a_group = trace_paths.group_size() * (device.description.type == "CPU" && turns == 0 ? 8 : 1);
+    most_at_once = turns > 0 ? std::max(1u, turns / turns_a_path) : ~0u;
 }
 
 uint32_t Renderer::FusedPipeline::groups(uint32_t pixels) const {
@@ -27,7 +32,7 @@ bool Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_
                                   KernelTimings& timings) {
     // With forward rays pass by pass: each meets its own.
     for (uint32_t done = 0, at_once; done < count; done += at_once) {
-        at_once = forward ? 1 : std::min(count - done, spectra.capacity());
+        at_once = forward ? 1 : std::min({count - done, spectra.capacity(), most_at_once});
         spectra.write(first + done, at_once, settings.seed);
         if (forward) forward->trace(commands, first + done, settings.seed, timings);
         const uint32_t all = settings.width * settings.height;

@@ -29,7 +29,7 @@ struct Renderer::FusedPipeline : Pipeline {
     void warm_up(CommandList& commands) override;
     uint32_t groups(uint32_t pixels) const;
     Kernel trace_paths;
-    uint32_t pixels_a_group;
+    uint32_t pixels_a_group, most_at_once;  // passes of a dispatch
     double pixels_a_second = 0;  // of the last dispatch; 0 = there was none
 };
 

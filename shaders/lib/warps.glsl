@@ -1,4 +1,6 @@
-// Warps of uniform points on [0,1)² to the distributions that samplers need.
+// Warps of uniform points on [0,1)² to the distributions that samplers need. Sines are not the driver's, which may be off by
+// 2^-11: points at the rim of the disk would lie beyond it, and directions at the horizon below.
+#include "lib/accurate_math.glsl"
 #include "lib/constants.glsl"
 
 // Concentric map of Shirley & Chiu 1997: uniform on the unit disk.
@@ -8,9 +10,8 @@ vec2 warp_disk(vec2 u) {
     float r = wide ? o.x : o.y;
     float s = wide ? o.y : o.x;
     if (r == 0.0) return vec2(0.0);
-    float phi = (PI / 4.0) * (s / r);
-    if (!wide) phi = PI / 2.0 - phi;
-    return r * vec2(cos(phi), sin(phi));
+    float turns = 0.125 * (s / r);
+    return r * cos_sin_turns(wide ? turns : 0.25 - turns);
 }
 
 // Cosine-weighted on the hemisphere z > 0; pdf = z / pi.
@@ -23,8 +24,7 @@ vec3 warp_cosine_hemisphere(vec2 u) {
 vec3 warp_sphere(vec2 u) {
     float z = 1.0 - 2.0 * u.x;
     float r = sqrt(max(0.0, 1.0 - z * z));
-    float phi = 2.0 * PI * u.y;
-    return vec3(r * cos(phi), r * sin(phi), z);
+    return vec3(r * cos_sin_turns(u.y), z);
 }
 
 // Uniform barycentrics (b1, b2) on a triangle (Heitz 2019, "A Low-Distortion Map Between Triangle and Square").

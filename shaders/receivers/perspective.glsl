@@ -12,7 +12,8 @@ struct PerspectiveCamera {
 // (2 x - 1, 1 - 2 y, 1).
 mat3 perspective_frame(PerspectiveCamera r, float film_aspect) {
     mat4x3 m = r.placement.world_from_local;
-    float h = tan(0.5 * r.yfov);
+    vec2 half_angle = cos_sin_turns(0.25 * INV_PI * r.yfov);  // no driver's tangent: it may be off by 2^-11
+    float h = half_angle.y / half_angle.x;
     return mat3(m[0] * (h * film_aspect), m[1] * h, -m[2]);
 }
 

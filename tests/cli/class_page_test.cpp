@@ -6,6 +6,7 @@
 #include "host/scene/classes.h"
 #include "tests/cli/program.h"
 #include "tests/support/light_probe.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -66,7 +67,7 @@ TEST_CASE(
 
 TEST_CASE("a page of one class, of shaders from a folder: without an example it has no picture") {
     const Executable program;
-    std::filesystem::copy(ETENDUE_SOURCE_DIR "/shaders", program.folder / "shaders",
+    std::filesystem::copy(source_path("shaders"), program.folder / "shaders",
                           std::filesystem::copy_options::recursive);
     const auto file = program.folder / "shaders/surfaces/absorber.glsl";
     const std::string text = read_text(file);

@@ -86,6 +86,11 @@ TEST_CASE("rays meet the vertices whose radius they reach, each once") {
         CHECK(check({1e-5f, 0.04f, origin}, random_rays(300)) > 1000);
     }
     SUBCASE("radii of many levels, rays through the camera") {
+        const uint32_t turns = test_device().description.max_loop_turns, wanted = 134000;  // of the ray with most vertices
+        if (turns > 0 && turns < wanted) {
+            MESSAGE("left out: the device ends loops after ", turns, " turns");
+            return;
+        }
         std::vector<glm::vec3> rays = random_rays(300);
         for (size_t i = 0; i < rays.size(); i += 2) rays[i] = -0.7f * rays[i + 1];
         CHECK(check({1e-5f, 0.04f, origin}, rays) > 1000);
