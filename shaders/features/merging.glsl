@@ -12,13 +12,18 @@ bool is_narrow(uint material) {
 }
 
 #if MERGE_VERTICES
-// Images of few pixels and wide angles get less than they ask for: lib/vertex_grid.glsl wants radii that change slowly.
-float merge_scale() {
-    float slope = receiver_footprint_slope(forward_pass.receiver, film_aspect());
-    return min(forward_pass.merge_scale, 0.05 / max(slope, 1e-6));
+// Radii in footprints of the receiver. Images of few pixels and wide angles get less than they ask for: lib/vertex_grid.glsl wants
+// radii that change slowly.
+float merge_scale(float slope) { return min(forward_pass.merge_scale, 0.05 / max(slope, 1e-6)); }
+float merge_radius(vec3 position, out float slope) {
+    float footprint = receiver_footprint(forward_pass.receiver, position, film_aspect(), slope);
+    float scale = merge_scale(slope);
+    slope *= scale;
+    return scale * footprint;
 }
 float merge_radius(vec3 position) {
-    return merge_scale() * receiver_footprint(forward_pass.receiver, position, film_aspect());
+    float slope;
+    return merge_radius(position, slope);
 }
 // Within it vertices merge: a disk of a surface, m², or a ball of a medium, m³.
 float merge_size(bool in_volume, float radius) { return PI * square(radius) * (in_volume ? 4.0 / 3.0 * radius : 1.0); }
@@ -28,7 +33,8 @@ float merge_density(bool in_volume, vec3 position) {
 
 // Whether the edge between a vertex that merges and the next one towards the receiver is short enough to ask for merging.
 bool is_short_edge(vec3 merging, vec3 next) {
-    return distance(merging, next) < forward_pass.short_scale * receiver_footprint(forward_pass.receiver, merging, film_aspect());
+    float slope;
+    return distance(merging, next) < forward_pass.short_scale * receiver_footprint(forward_pass.receiver, merging, film_aspect(), slope);
 }
 #else
 #define merge_radius(position) 0.0

@@ -4,9 +4,9 @@
 //   ReceiverSample NAME_connect(R r, vec3 point, vec2 u, float film_aspect)   a way from a point to the receiver. Its density
 //                               / pdf is the importance: a point that sends the intensity I (W/sr) that way adds
 //                               I * density / pdf to the mean over the film
-//   float          NAME_footprint(R r, vec3 point, float film_aspect)   square root of the area that the whole film covers at
-//                               the point's distance, m; > 0, continuous, also for points out of view
-//   float          NAME_footprint_slope(R r, float film_aspect)   most by which the footprint changes over a metre, m/m
+//   float          NAME_footprint(R r, vec3 point, float film_aspect, out float slope)   square root of the area that the whole
+//                               film covers at the point's distance, m; > 0, continuous, also for points out of view; `slope` is the
+//                               most by which it changes over a metre, m/m
 //
 // `film` runs over [0,1]², x to the right, y down; film_aspect = width / height of the image. World space; node transforms
 // may scale, shear and mirror.
@@ -66,20 +66,11 @@ ReceiverSample receiver_connect(uint ref, vec3 point, vec2 u, float film_aspect)
     return result;
 }
 
-float receiver_footprint(uint ref, vec3 point, float film_aspect) {
+float receiver_footprint(uint ref, vec3 point, float film_aspect, out float slope) {
     float result = 1.0;
+    slope = 0.0;
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_footprint(name##_record(record_index(ref)), point, film_aspect); break;
-        RECEIVER_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
-}
-
-float receiver_footprint_slope(uint ref, float film_aspect) {
-    float result = 0.0;
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_footprint_slope(name##_record(record_index(ref)), film_aspect); break;
+#define CASE(tag, Struct, name) case tag: result = name##_footprint(name##_record(record_index(ref)), point, film_aspect, slope); break;
         RECEIVER_CLASSES(CASE)
 #undef CASE
     }

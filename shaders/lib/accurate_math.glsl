@@ -43,15 +43,19 @@ float accurate_acos(float x) {
     return x < 0.0 ? PI - r : r;
 }
 
+// (cos, sin) of an angle of at most pi/4 either way; absolute error below 2e-7.
+vec2 cos_sin_small(float a) {
+    float z = a * a;
+    return vec2(((2.443315711809948e-5 * z - 1.388731625493765e-3) * z + 4.166664568298827e-2) * z * z - 0.5 * z + 1.0,
+                ((-1.9515295891e-4 * z + 8.3321608736e-3) * z - 1.6666654611e-1) * z * a + a);
+}
+
 // (cos, sin) of `turns` full turns, |turns| < 2^20; absolute error below 2e-7.
 vec2 cos_sin_turns(float turns) {
     float quadrant = floor(4.0 * turns + 0.5);
-    float a = (turns - 0.25 * quadrant) * (2.0 * PI);  // |a| <= pi/4; the difference is exact
-    float z = a * a;
-    float s = ((-1.9515295891e-4 * z + 8.3321608736e-3) * z - 1.6666654611e-1) * z * a + a;
-    float c = ((2.443315711809948e-5 * z - 1.388731625493765e-3) * z + 4.166664568298827e-2) * z * z - 0.5 * z + 1.0;
+    vec2 p = cos_sin_small((turns - 0.25 * quadrant) * (2.0 * PI));  // the difference is exact
     uint k = uint(int(quadrant)) & 3u;
-    vec2 r = (k & 1u) != 0u ? vec2(s, c) : vec2(c, s);
+    vec2 r = (k & 1u) != 0u ? p.yx : p;
     // Quadrants 1 and 2 have a negative cosine, 2 and 3 a negative sine.
     return vec2(k == 1u || k == 2u ? -r.x : r.x, k >= 2u ? -r.y : r.y);
 }

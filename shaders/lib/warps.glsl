@@ -10,8 +10,8 @@ vec2 warp_disk(vec2 u) {
     float r = wide ? o.x : o.y;
     float s = wide ? o.y : o.x;
     if (r == 0.0) return vec2(0.0);
-    float turns = 0.125 * (s / r);
-    return r * cos_sin_turns(wide ? turns : 0.25 - turns);
+    vec2 p = cos_sin_small((PI / 4.0) * (s / r));
+    return r * (wide ? p : p.yx);
 }
 
 // Cosine-weighted on the hemisphere z > 0; pdf = z / pi.

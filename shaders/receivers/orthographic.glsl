@@ -32,8 +32,7 @@ ReceiverSample orthographic_connect(OrthographicCamera r, vec3 point, vec2 u, fl
                           1.0 / orthographic_area(f), 1.0);
 }
 
-float orthographic_footprint(OrthographicCamera r, vec3 point, float film_aspect) {
+float orthographic_footprint(OrthographicCamera r, vec3 point, float film_aspect, out float slope) {
+    slope = 0.0;
     return sqrt(orthographic_area(orthographic_frame(r, film_aspect)));
 }
-
-float orthographic_footprint_slope(OrthographicCamera r, float film_aspect) { return 0.0; }

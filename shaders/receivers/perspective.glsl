@@ -12,8 +12,8 @@ struct PerspectiveCamera {
 // (2 x - 1, 1 - 2 y, 1).
 mat3 perspective_frame(PerspectiveCamera r, float film_aspect) {
     mat4x3 m = r.placement.world_from_local;
-    vec2 half_angle = cos_sin_turns(0.25 * INV_PI * r.yfov);  // no driver's tangent: it may be off by 2^-11
-    float h = half_angle.y / half_angle.x;
+    vec2 p = cos_sin_small(0.25 * r.yfov);  // no driver's tangent: it may be off by 2^-11
+    float h = 2.0 * p.x * p.y / ((p.x - p.y) * (p.x + p.y));
     return mat3(m[0] * (h * film_aspect), m[1] * h, -m[2]);
 }
 
@@ -43,12 +43,8 @@ ReceiverSample perspective_connect(PerspectiveCamera r, vec3 point, vec2 u, floa
 }
 
 // The solid angle of the whole film as if it were small, at the distance of the point but for one that no scene resolves.
-float perspective_footprint_slope(PerspectiveCamera r, float film_aspect) {
+float perspective_footprint(PerspectiveCamera r, vec3 point, float film_aspect, out float slope) {
     mat3 f = perspective_frame(r, film_aspect);
-    return inversesqrt(perspective_density(f, f[2]));
-}
-
-float perspective_footprint(PerspectiveCamera r, vec3 point, float film_aspect) {
-    float distance = max(length(point - r.placement.world_from_local[3]), 1e-12);
-    return distance * perspective_footprint_slope(r, film_aspect);
+    slope = inversesqrt(perspective_density(f, f[2]));
+    return max(length(point - r.placement.world_from_local[3]), 1e-12) * slope;
 }

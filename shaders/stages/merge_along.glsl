@@ -38,7 +38,8 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
     Spectrum share = path.throughput / max(dot(path.throughput, Spectrum(1)), 1e-30);
     Spectrum inner = Spectrum(0), outer = Spectrum(0);
     BeamQuery query;
-    float slope = merge_scale() * receiver_footprint_slope(forward_pass.receiver, film_aspect());
+    float slope;
+    merge_radius(path.origin, slope);
     begin_beam(query, path.origin, path.direction, length, slope);
     uint index;
     while (next_on_beam(query, index)) {

@@ -50,8 +50,9 @@ const char* const text = R"(
             emitted[i] = Emitted(r.origin, r.weight, r.direction, r.density, r.connect_pdf, uint(r.is_parallel));
         } else {
             ReceiverSample s = receiver_connect(receiver, places[i], vec2(0.5), aspect);
+            float slope;
             connected[i] = Connected(s.direction, s.distance, s.film, s.density, s.pdf,
-                                     receiver_footprint(receiver, places[i], aspect));
+                                     receiver_footprint(receiver, places[i], aspect, slope));
         }
     }
 )";
