@@ -16,17 +16,15 @@ void end_forward_path(uint path_index, Path path) { path_ends[path_index] = path
 #include "stages/trace_shadow.glsl"
 #if CONNECT_VERTICES
 #include "stages/connect_vertices.glsl"
-// What the shadow rays of an event bring: a loop, so that the code stands once.
-Spectrum trace_shadows(ShadowRay shadow, ShadowRay vertex_shadow, inout Counters counters) {
-    Spectrum sum = Spectrum(0);
+// Adds what the shadow rays of an event bring, one after the other, as all schedules do: a loop, so that the code stands once.
+void trace_shadows(ShadowRay shadow, ShadowRay vertex_shadow, inout Spectrum radiance, inout Counters counters) {
     for (uint i = 0u; i < 2u; ++i) {
-        sum += trace_shadow(shadow, counters);
+        radiance += trace_shadow(shadow, counters);
         shadow = vertex_shadow;
     }
-    return sum;
 }
 #else
-#define trace_shadows(shadow, vertex_shadow, counters) trace_shadow(shadow, counters)
+#define trace_shadows(shadow, vertex_shadow, radiance, counters) radiance += trace_shadow(shadow, counters)
 #include "lib/events.glsl"
 struct Connection { vec3 wi; };
 #define no_connection(wi) Connection(wi)

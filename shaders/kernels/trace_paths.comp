@@ -39,7 +39,7 @@ void main() {
         Hit hit = find_hit(path.origin, path.direction, end);
         ShadowRay shadow, vertex_shadow;
         alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
-        path.radiance += trace_shadows(shadow, vertex_shadow, counters);
+        trace_shadows(shadow, vertex_shadow, path.radiance, counters);
         if (!alive) {
             record_bias(sum, path);
             record_sample(sum, pixel, path.radiance, counters);

@@ -1,5 +1,6 @@
 // Scenes that are edited while they are rendered: a change shows what a scene file with the new values shows,
 // and compiles no more than that needs.
+#include <algorithm>
 #include <cmath>
 
 #include "host/error.h"
@@ -399,7 +400,9 @@ TEST_CASE("a broken shader is one line, and the scene before it stays") {
     } catch (const Error& error) {
         message = error.what();
     }
-    CHECK(message.find("surfaces/lambertian.glsl:28: '' :  syntax error, unexpected SEMICOLON") == 0);
+    const auto line = 2 + std::count(lambertian.begin(), lambertian.end(), '\n');
+    CHECK(message.find(fmt::format("surfaces/lambertian.glsl:{}: '' :  syntax error, unexpected SEMICOLON",
+                                   line)) == 0);
     CHECK(film(*live.scene()) == seen);
     // Whole again, but a darker surface.
     std::string darker = lambertian;
