@@ -53,7 +53,7 @@ std::vector<glm::vec4> film_reflectances(const std::vector<FilmQuery>& queries) 
     Buffer in = create_buffer(test_device(), queries, "queries"),
            out(test_device(), queries.size() * 16, "reflectances");
     const Kernel kernel = make_test_kernel("probe_thin_film", R"(
-        #include "lib/thin_film.glsl"
+        #include "features/thin_film_spectra.glsl"
         layout(local_size_x = 64) in;
         struct Query { float cosine, n, film, thickness, eta, k, nm; };
         layout(scalar, set = 0) readonly buffer Queries { Query queries[]; };
