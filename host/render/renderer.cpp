@@ -96,7 +96,8 @@ RenderCounters counters_from_json(const nlohmann::json& json) {
 Schedule choose_schedule(const Scene& scene) {
     if (scene.features.bending) return Schedule::fused;
     size_t classes = 0;
-    for (const auto& [interface, used] : scene.classes) classes += used.size();
+    for (const auto& [interface, used] : scene.classes)
+        if (interface != Interface::phase) classes += used.size();  // those are a line each
     return scene.triangles + scene.shapes <= 4096 && classes <= 8 ? Schedule::fused : Schedule::wavefront;
 }
 
