@@ -156,7 +156,8 @@ class Rewriter {
         for (size_t i = 4; i < chain.size(); ++i) {
             const SpirvType& t = declared_.types.at(type);
             if (t.op == spv::OpTypeVector) return type;
-            type = t.op == spv::OpTypeStruct ? t.operands.at(declared_.constants.at(chain[i])) : t.operands[0];
+            type =
+                t.op == spv::OpTypeStruct ? t.operands.at(declared_.constants.at(chain[i])) : t.operands[0];
         }
         return 0;
     }

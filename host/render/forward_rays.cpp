@@ -54,13 +54,12 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
       splats_(device, splat_bytes(), "Splats") {
     splats_.fill(0);
     if (techniques.connect || techniques.merge) {
-        const VertexMap::Shaders shaders = {
-            [&](const std::string& file, const BufferTable& table) {
-                return make_kernel(device, scene, file, table);
-            },
-            [&](const std::string& file, const std::string& buffer) {
-                return element_bytes(device, scene, file, "", buffer);
-            }};
+        const VertexMap::Shaders shaders = {[&](const std::string& file, const BufferTable& table) {
+                                                return make_kernel(device, scene, file, table);
+                                            },
+                                            [&](const std::string& file, const std::string& buffer) {
+                                                return element_bytes(device, scene, file, "", buffer);
+                                            }};
         const uint64_t least = scene.features.scattering ? least_vertices_in_media : least_vertices;
         const uint64_t most = std::max(least, uint64_t(count_) * vertices_a_path);
         const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex(shaders);

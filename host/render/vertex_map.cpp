@@ -28,9 +28,9 @@ uint32_t bucket_count(uint32_t capacity) {
 
 uint64_t VertexMap::bytes_a_vertex(const Shaders& shaders) {
     const uint64_t buckets = 2 * 4;  // at most
-    return shaders.element_bytes(sort_file, "LightVertices") + shaders.element_bytes(sort_file, "GridPlaces") +
-           shaders.element_bytes(sort_file, "GridItems") + shaders.element_bytes(order_file, "GridEntries") +
-           buckets;
+    return shaders.element_bytes(sort_file, "LightVertices") +
+           shaders.element_bytes(sort_file, "GridPlaces") + shaders.element_bytes(sort_file, "GridItems") +
+           shaders.element_bytes(order_file, "GridEntries") + buckets;
 }
 
 VertexMap::VertexMap(Device& device, uint32_t capacity, const Shaders& shaders)

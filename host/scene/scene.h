@@ -110,11 +110,12 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
 uint64_t element_bytes(Device& device, Scene& scene, const std::string& file, const std::string& defines,
                        const std::string& buffer);
 
-// While it lives, kernels of the scene are compiled for colours even where paths carry wavelengths: for what does
-// not depend on them.
+// While it lives, kernels of the scene are compiled for colours even where paths carry wavelengths: for what
+// does not depend on them.
 class InColors {
   public:
-    explicit InColors(Scene& scene) : scene_(scene), spectral_(std::exchange(scene.features.spectral, false)) {}
+    explicit InColors(Scene& scene)
+        : scene_(scene), spectral_(std::exchange(scene.features.spectral, false)) {}
     InColors(const InColors&) = delete;
     ~InColors() { scene_.features.spectral = spectral_; }
 

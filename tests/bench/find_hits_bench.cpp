@@ -1,5 +1,6 @@
-// Rays per second through the hierarchy of a procedural interior: primary rays and diffuse bounces, nearest and any hit;
-// beside them Embree, ray by ray on one core, where it was there when this was built (package libembree-dev).
+// Rays per second through the hierarchy of a procedural interior: primary rays and diffuse bounces, nearest
+// and any hit; beside them Embree, ray by ray on one core, where it was there when this was built (package
+// libembree-dev).
 //
 //     find_hits_bench [TRIANGLES=400000] [RAYS=1000000] [REPEATS=3]
 //
@@ -105,13 +106,16 @@ Speed measure(size_t rays, int repeats, const Trace& trace) {
     return {double(rays) * 1e-6 / wall, double(rays) * 1e-6 / processor};
 }
 
-void print(const char* what, const char* kind, const char* rays, const Speed& speed, const std::vector<Hit>& hits) {
+void print(const char* what, const char* kind, const char* rays, const Speed& speed,
+           const std::vector<Hit>& hits) {
     double distance = 0;
     size_t found = 0;
     for (const Hit& hit : hits)
         if (hit.is_there()) found++, distance += hit.t;
-    fmt::print("{:8} {:11} {:8} {:7.3f} Mrays/s, {:7.3f} per processor second   ({} of {} hit, mean distance {:.6f})\n",
-               what, kind, rays, speed.wall, speed.processor, found, hits.size(), distance / double(found));
+    fmt::print(
+        "{:8} {:11} {:8} {:7.3f} Mrays/s, {:7.3f} per processor second   ({} of {} hit, mean distance "
+        "{:.6f})\n",
+        what, kind, rays, speed.wall, speed.processor, found, hits.size(), distance / double(found));
     std::fflush(stdout);
 }
 
@@ -134,8 +138,8 @@ class DeviceTracer {
         const Buffer directions = create_buffer(device_, rays.directions, "RayDirections");
         const Buffer hits(device_, count * sizeof(Hit), "Hits");
         CompileOptions options;
-        options.defines = fmt::format("#define HAS_TRIANGLES 1\n#define ANY_HIT {:d}\n#define BVH_STACK_SIZE {}\n",
-                                      any_hit, stack_);
+        options.defines = fmt::format(
+            "#define HAS_TRIANGLES 1\n#define ANY_HIT {:d}\n#define BVH_STACK_SIZE {}\n", any_hit, stack_);
         const Kernel kernel(device_, compile_shader(sources_, "kernels/find_hits.comp", options),
                             {{"Nodes", &nodes_},
                              {"Primitives", &primitives_},
@@ -170,8 +174,8 @@ class EmbreeTracer {
         RTCGeometry mesh = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* vertices = static_cast<glm::vec3*>(rtcSetNewGeometryBuffer(
             mesh, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3), 3 * triangles.size()));
-        auto* indices = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                       RTC_FORMAT_UINT3, 12, triangles.size()));
+        auto* indices = static_cast<uint32_t*>(
+            rtcSetNewGeometryBuffer(mesh, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, triangles.size()));
         for (size_t i = 0; i < triangles.size(); i++) {
             vertices[3 * i] = triangles[i].v0, vertices[3 * i + 1] = triangles[i].v1;
             vertices[3 * i + 2] = triangles[i].v2;
@@ -258,7 +262,8 @@ void run(size_t triangle_count, uint32_t ray_count, int repeats) {
 #ifdef HAS_EMBREE
             const Speed embree = yardstick.trace(*rays, any_hit, repeats, hits);
             print("Embree", kind, name, embree, hits);
-            fmt::print("         {:.2f} times as fast per processor second\n", embree.processor / own.processor);
+            fmt::print("         {:.2f} times as fast per processor second\n",
+                       embree.processor / own.processor);
 #endif
         }
 }

@@ -166,8 +166,10 @@ TEST_CASE("paths start among the bodies that hold their start, whose faces may c
         const Surroundings& around = found[1 + 2 * i];
         CHECK(around.counts == glm::uvec2(expected[i].counts, 0));
         CHECK(around.outer == (expected[i].in_fog ? fog : no_record));
-        if (expected[i].counts == 0) CHECK(around.medium == around.outer);
-        else CHECK(around.medium != around.outer);
+        if (expected[i].counts == 0)
+            CHECK(around.medium == around.outer);
+        else
+            CHECK(around.medium != around.outer);
     }
 }
 
