@@ -158,6 +158,7 @@ DeviceDescription describe(VkPhysicalDevice device, uint32_t index, bool for_win
     d.subgroup_size = subgroup.subgroupSize;
     d.max_buffer_range = p.limits.maxStorageBufferRange;
     d.max_allocation = maintenance.maxMemoryAllocationSize;
+    d.compiles_choices = driver.driverID != VK_DRIVER_ID_GOOGLE_SWIFTSHADER;
     if (reads_texels_faster(driver, p.driverVersion)) {
         d.max_texels = p.limits.maxTexelBufferElements;
         d.max_texel_buffers = p.limits.maxPerStageDescriptorSampledImages;

@@ -58,8 +58,7 @@ void turn(inout Path path, vec3 direction, vec3 position) {
 
 bool count_step(inout Path path, inout Counters counters) {
     if (++path.bend.steps < MAX_STEPS) return true;
-    counters.depth_limit++;
-    counters.depth_limit_lost += luminance(path.throughput);
+    cut_path(path, counters);
     return false;
 }
 

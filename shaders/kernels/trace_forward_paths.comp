@@ -35,5 +35,6 @@ void main() {
             index += lanes;
         }
     }
+    if (index < forward_pass.count) cut_path(path, counters);  // as in trace_paths
     store_counters(counters);
 }

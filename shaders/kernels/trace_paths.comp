@@ -51,5 +51,6 @@ void main() {
             }
         }
     }
+    if (pixel < end_pixel) cut_path(path, counters);  // by a driver that ends loops early (host/gpu/loop_turns.h)
     store_counters(counters);
 }

@@ -4,6 +4,10 @@
 
 #include "lib/constants.glsl"
 
+// a, or about - a. Not `flips ? about - a : a`: time and memory that SwiftShader takes double with every choice between two
+// expressions of one value.
+float flip(float a, bool flips, float about) { return (flips ? -1.0 : 1.0) * a + (flips ? about : 0.0); }
+
 // The angle of (x, y) from +x, in [-pi, pi], as atan(y, x); 0 at the origin. Relative error below 3e-7.
 float accurate_atan2(float y, float x) {
     float big = max(abs(x), abs(y)), small = min(abs(x), abs(y));
@@ -14,10 +18,10 @@ float accurate_atan2(float y, float x) {
     float q = denominator > 0.0 ? numerator / denominator : 0.0;
     float z = q * q;
     float a = (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) * z * q + q;
-    a = upper ? a + 0.25 * PI : a;
-    a = abs(y) > abs(x) ? 0.5 * PI - a : a;
-    a = x < 0.0 ? PI - a : a;
-    return y < 0.0 ? -a : a;
+    a += upper ? 0.25 * PI : 0.0;
+    a = flip(a, abs(y) > abs(x), 0.5 * PI);
+    a = flip(a, x < 0.0, PI);
+    return flip(a, y < 0.0, 0.0);
 }
 
 float accurate_asin_small(float x) {  // |x| <= 0.5

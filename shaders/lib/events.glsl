@@ -87,7 +87,6 @@ bool continue_path(inout Path path, uint event, inout Counters counters) {
 #endif
     if (!survives) return false;
     if (++path.depth < MAX_DEPTH) return true;
-    counters.depth_limit++;
-    counters.depth_limit_lost += luminance(path.throughput);
+    cut_path(path, counters);
     return false;
 }

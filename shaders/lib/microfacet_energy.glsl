@@ -1,5 +1,6 @@
 // What rough surfaces of single-scattering GGX facets lose (lib/microfacet.glsl: Smith, G1 G1), for the lobes
 // that give it back. The functions are fits to quadratures of the albedo over 256 x 128 visible facets.
+#include "lib/accurate_math.glsl"
 
 // 1 - E(mu) of facets that reflect everything, to 0.002, for mu > 0, alpha in [1e-4, 1].
 float ggx_loss(float mu, float alpha) {
@@ -30,8 +31,7 @@ float ggx_multiscatter_pdf(float mu, float alpha) {
 vec3 ggx_sample_multiscatter(vec2 u, float alpha) {
     float w2 = 4.0 * alpha * alpha;
     float mu2 = clamp(w2 * (exp(u.x * log(1.0 + 1.0 / w2)) - 1.0), 0.0, 1.0);
-    float phi = 2.0 * PI * u.y;
-    return vec3(sqrt(1.0 - mu2) * vec2(cos(phi), sin(phi)), sqrt(mu2));
+    return vec3(sqrt(1.0 - mu2) * cos_sin_turns(u.y), sqrt(mu2));
 }
 
 // Part of the samples that follow it: what is lost, but never so much that the others weigh more than twice.

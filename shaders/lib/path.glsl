@@ -81,7 +81,7 @@ struct Counters {
     uint rays;                // segments traced
     uint shadow_rays;
     uint non_finite;          // samples dropped: not a number, or infinite
-    uint depth_limit;         // paths cut at MAX_DEPTH
+    uint depth_limit;         // paths cut, at MAX_DEPTH for the most part
     float escaped;            // importance (1 a backward path) or flux (about 1 a forward path) that left the scene
     float depth_limit_lost;   // of the paths cut
 #if FORWARD
@@ -90,3 +90,9 @@ struct Counters {
     float roulette;           // taken by Russian roulette, less what it gave to the survivors
 #endif
 };
+
+// The path ends before its time.
+void cut_path(Path path, inout Counters counters) {
+    counters.depth_limit++;
+    counters.depth_limit_lost += luminance(path.throughput);
+}
