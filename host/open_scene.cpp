@@ -14,6 +14,7 @@ SceneOptions scene_options(const SceneChoice& choice) {
     options.shaders = choice.shaders;
     options.environment = choice.environment;
     options.color = choice.color;
+    options.polarization = choice.polarization;
     options.spectral_image = choice.spectral_bins > 0;
     options.samples = choice.samples;
     options.cache_folder = default_cache_folder();

@@ -12,8 +12,6 @@
 
 namespace etendue {
 
-enum class PolarizationMode { automatic, off };
-
 struct ImageSize {
     uint32_t width = 0, height = 0;
 };
@@ -26,6 +24,7 @@ struct SceneChoice {
     std::string receiver;               // name; empty = the first of the scene
     std::string device;                 // name, part of one, or index; empty = the best there is
     ColorMode color = ColorMode::automatic;
+    PolarizationMode polarization = PolarizationMode::automatic;
     uint32_t spectral_bins = 0;  // of the image, besides its colours; 0 = none
     SampleSequence samples = SampleSequence::sobol;
     std::optional<ImageSize> size;  // else 512 rows, and columns by the camera's aspect ratio
@@ -36,7 +35,6 @@ struct RenderOptions : SceneChoice {
     std::optional<uint64_t> passes;  // exactly one of the three goals is set; 64 passes by default
     std::optional<double> seconds, error;
     Algorithm algorithm = Algorithm::automatic;
-    PolarizationMode polarization = PolarizationMode::automatic;
     Schedule schedule = Schedule::automatic;
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths
     uint64_t seed = 0;

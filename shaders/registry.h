@@ -38,7 +38,12 @@
     X(7, Principled, principled)       \
     X(8, DiffuseTransmitter, diffuse_transmitter) \
     X(9, ThinFilm, thin_film)           \
-    X(10, Measured, measured)
+    X(10, Measured, measured)           \
+    X(11, LinearPolarizer, linear_polarizer) \
+    X(12, ReflectivePolarizer, reflective_polarizer) \
+    X(13, Retarder, retarder)           \
+    X(14, Depolarizer, depolarizer)     \
+    X(15, ColorFilter, color_filter)
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)              \

@@ -23,7 +23,6 @@ const char* overview =
 // Arguments as text (host/cli/values.h).
 struct RenderArguments {
     std::optional<std::string> passes, seconds, error;
-    std::string polarization = "auto";
     SharedArguments shared;
 };
 
@@ -62,9 +61,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
                 {"vertex-memory",
                  "Memory for vertices of forward paths; a pass that needs more is split (default: 256)"},
                 {"color", "What a ray carries (default: auto)"},
+                {"polarization", "Whether rays carry polarization (default: auto, where something polarizes)"},
                 {"spectral-bins", "Also write the spectrum, in N equal bins from 360 to 830 nm"}});
-    render->add_option("--polarization", arguments.polarization, "Trace polarized light (default: auto)")
-        ->option_text("auto|off");
     add_shared(*render, options, arguments.shared,
                {{"schedule", "Whole paths in one kernel, or a kernel a stage (default: auto)"},
                 {"sampler", "Where random numbers come from (default: sobol)"},
@@ -101,9 +99,6 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.schedule = parse_schedule(arguments.shared.schedule);
     if (options.spectral_bins > 0 && options.color == ColorMode::rgb)
         fail_input("--spectral-bins: goes with --color spectral or auto, not with rgb");
-    options.polarization = parse_choice<PolarizationMode>(
-        arguments.polarization, "--polarization",
-        {{"auto", PolarizationMode::automatic}, {"off", PolarizationMode::off}});
     if (options.output.empty()) options.output = default_output(options.scene);
     if (options.output.extension() != ".exr")
         fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
@@ -157,6 +152,7 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& argume
                 {"environment"},
                 {"vertex-memory"},
                 {"color"},
+                {"polarization"},
                 {"sampler"},
                 {"seed", "First seed (default: 0)"},
                 {"device"},

@@ -45,6 +45,7 @@ CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments
                 {"receiver"},
                 {"environment"},
                 {"color"},
+                {"polarization"},
                 {"sampler"},
                 {"seed"},
                 {"device"},

@@ -19,6 +19,7 @@ void add_shared(CLI::App& command, SceneChoice& options, SharedArguments& argume
         add("--algorithm", arguments.algorithm, "auto|backward|forward|bidirectional");
         add("--vertex-memory", arguments.vertex_memory, "MIB");
         add("--color", arguments.color, "auto|rgb|spectral");
+        add("--polarization", arguments.polarization, "auto|on|off");
         add("--spectral-bins", arguments.spectral_bins, "N");
         add("--schedule", arguments.schedule, "auto|fused|wavefront|by-class");
         add("--sampler", arguments.sampler, "sobol|independent");
@@ -33,6 +34,7 @@ void finish_shared(SceneChoice& options, const SharedArguments& arguments) {
     if (arguments.spectral_bins)
         options.spectral_bins = uint32_t(parse_count(*arguments.spectral_bins, "--spectral-bins", 1, 470));
     options.color = parse_color(arguments.color);
+    options.polarization = parse_polarization(arguments.polarization);
     options.samples = parse_sampler(arguments.sampler);
 }
 

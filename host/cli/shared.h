@@ -15,7 +15,7 @@ namespace etendue {
 // Arguments as text (host/cli/values.h).
 struct SharedArguments {
     std::optional<std::string> size, spectral_bins;
-    std::string algorithm = "auto", vertex_memory = "256", color = "auto", schedule = "auto",
+    std::string algorithm = "auto", vertex_memory = "256", color = "auto", polarization = "auto", schedule = "auto",
                 sampler = "sobol", seed = "0";
 };
 

@@ -60,6 +60,13 @@ ColorMode parse_color(const std::string& text) {
         {{"auto", ColorMode::automatic}, {"rgb", ColorMode::rgb}, {"spectral", ColorMode::spectral}});
 }
 
+PolarizationMode parse_polarization(const std::string& text) {
+    return parse_choice<PolarizationMode>(text, "--polarization",
+                                          {{"auto", PolarizationMode::automatic},
+                                           {"on", PolarizationMode::on},
+                                           {"off", PolarizationMode::off}});
+}
+
 SampleSequence parse_sampler(const std::string& text) {
     return parse_choice<SampleSequence>(
         text, "--sampler", {{"sobol", SampleSequence::sobol}, {"independent", SampleSequence::independent}});

@@ -13,6 +13,7 @@ ImageSize parse_size(const std::string& text);  // of --size
 Algorithm parse_algorithm(const std::string& text, const char* option);
 std::vector<Algorithm> parse_algorithms(const std::string& text, const char* option);  // with commas between
 ColorMode parse_color(const std::string& text);                                        // of --color, …
+PolarizationMode parse_polarization(const std::string& text);
 SampleSequence parse_sampler(const std::string& text);
 Schedule parse_schedule(const std::string& text);
 double parse_exposure(const std::string& text);

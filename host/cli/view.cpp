@@ -23,6 +23,7 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options, ViewArguments& arguments
                 {"algorithm"},
                 {"vertex-memory"},
                 {"color"},
+                {"polarization"},
                 {"spectral-bins"},
                 {"schedule"},
                 {"sampler"},

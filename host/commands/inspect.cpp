@@ -50,6 +50,9 @@ int inspect_command(const InspectOptions& options) {
             "no value is a spectrum: paths carry three channels");
     feature(f.dispersion, "dispersion", "a refractive index depends on the wavelength",
             "refractive indices are the same at all wavelengths");
+    feature(f.polarization, "polarization", "rays carry Stokes vectors",
+            "no class polarizes on purpose: what reflection and refraction do to polarization is neglected "
+            "(--polarization on)");
     feature(f.interfaces, "interfaces", "surfaces separate media", "no medium named");
     feature(f.media, "media", "a medium absorbs or scatters", "no medium absorbs");
     feature(f.scattering, "scattering", "a medium scatters: paths have vertices between surfaces",

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <regex>
 #include <sstream>
+#include <utility>
 
 #include "host/error.h"
 #include "host/scene/features.h"
@@ -55,9 +56,11 @@ HeadComment head_comment(const std::string& text) {
     return {trim(result.summary), trim(result.example)};
 }
 
-void read_head_comment(const std::string& text, ClassInfo& info) {
+void read_class(const std::string& text, ClassInfo& info) {
     HeadComment head = head_comment(text);
     info.summary = std::move(head.summary), info.example = std::move(head.example);
+    info.says_polarization = text.find(info.name + "_mueller(") != std::string::npos;
+    info.polarizes = std::regex_search(text, std::regex(R"(#define \w+_POLARIZES\b)"));
 }
 
 double range_end(const std::string& text) {
@@ -66,7 +69,7 @@ double range_end(const std::string& text) {
     return std::stod(text);
 }
 
-// DEFAULT [in RANGE] [UNIT]. Description.
+// DEFAULT [in RANGE] [UNIT]. Description. Or DEFAULT of WORD|WORD… . Description.
 void parse_annotation(const std::string& annotation, Parameter& p, const std::string& file) {
     static const std::regex form(
         R"(^(\[[^\]]*\]|\S+?)(?:\s+in\s+([\[(])\s*([^,\s]+)\s*,\s*([^\])\s]+)\s*([\])]))?(?:\s+(\S[^.]*?))?\.(?:\s+(.*))?$)");
@@ -89,6 +92,10 @@ void parse_annotation(const std::string& annotation, Parameter& p, const std::st
         p.lo = range_end(match[3]), p.hi = range_end(match[4]);
     }
     p.unit = trim(match[6]);
+    if (p.unit.rfind("of ", 0) == 0) {
+        std::istringstream words(std::exchange(p.unit, "").substr(3));
+        for (std::string word; std::getline(words, word, '|');) p.choices.push_back(word);
+    }
     p.text = trim(match[7]);
 }
 
@@ -149,6 +156,11 @@ bool Parameter::in_range(double value) const {
 }
 
 std::string Parameter::range() const {
+    if (!choices.empty()) {
+        std::string words;
+        for (const std::string& word : choices) words += (words.empty() ? "" : "|") + word;
+        return words;
+    }
     if (std::isinf(lo) && std::isinf(hi)) return "";
     return fmt::format("{}{}, {}{}", lo_open ? '(' : '[', lo, hi, hi_open ? ')' : ']');
 }
@@ -180,7 +192,7 @@ ClassRegistry::ClassRegistry(ShaderSources sources, std::filesystem::path cache_
             info.record = (*i)[2];
             info.name = (*i)[3];
             info.file = fmt::format("{}/{}.glsl", interface.folder, info.name);
-            if (auto source = sources_.find(info.file)) read_head_comment(*source, info);
+            if (auto source = sources_.find(info.file)) read_class(*source, info);
             classes.push_back(std::move(info));
         }
     }
@@ -205,7 +217,7 @@ void ClassRegistry::add_class_file(Interface interface, const std::filesystem::p
     const std::string text = (std::ostringstream() << stream.rdbuf()).str();
     if (!std::regex_search(text, std::regex(fmt::format(R"(struct\s+{}\b)", info.record))))
         fail_input("{}: a class file declares its record; struct {} is missing", info.file, info.record);
-    read_head_comment(text, info);
+    read_class(text, info);
     sources_.generated[info.file] = text;
     classes.push_back(std::move(info));
 }
@@ -291,6 +303,10 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         const auto known = constants.find(info->name);
         if (known != constants.end()) text += known->second.macros;
         text += fmt::format("#include \"{}\"\n", info->file);
+        if (interface.interface == Interface::surface && !info->says_polarization)
+            text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n", info->name);
+        if (interface.interface == Interface::phase && !info->says_polarization)
+            text += fmt::format("#define {}_mueller(r, cosine) depolarizing()\n", info->name);
         // All classes of an interface are views of one buffer, on one binding.
         const MemberLayout* last = info->parameters.empty() ? nullptr : &info->parameters.back().member;
         const uint32_t padding = last ? (info->stride - last->offset - last->size) / 4 : 0;

@@ -4,6 +4,7 @@
 // the compiled struct; default, range, unit and meaning of a parameter from the comment behind its member:
 //
 //     float alpha;  //: 0 in [0, 1] UNIT. Description.
+//     uint kind;    //: "one" of one|other. Description.
 //
 // Members without `//:` are filled by the host. The comment at the head of the file says what the class is;
 // behind a line "Example:" it may have one, part of a scene file (scenes/FORMAT.md), indented.
@@ -40,10 +41,11 @@ struct Parameter {
     nlohmann::json default_value;  // null = absent
     double lo = -std::numeric_limits<double>::infinity(), hi = std::numeric_limits<double>::infinity();
     bool lo_open = true, hi_open = true;
+    std::vector<std::string> choices;  // a word of these, kept as its number
     std::string unit, text;
 
     bool in_range(double value) const;
-    std::string range() const;          // "[0, 1]"; empty where there is none
+    std::string range() const;          // "[0, 1]", "one|other"; empty where there is none
     std::string shown_default() const;  // "required", "none" or a JSON value
 };
 
@@ -53,6 +55,8 @@ struct ClassInfo {
     std::string record, name, file;  // struct, class, GLSL file
     std::string summary;             // the comment at the head of the file, without the example
     std::string example;             // as it stands there, JSON; may be empty
+    bool says_polarization = false;  // NAME_mueller is there
+    bool polarizes = false;          // NAME_POLARIZES: scenes with the class carry polarization
     // Filled by reflection, at first use:
     uint32_t stride = 0;  // bytes of a record
     std::vector<Parameter> parameters;

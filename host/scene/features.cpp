@@ -38,6 +38,7 @@ std::string Features::defines() const {
     define("HAS_STRAIGHT", straight);
     define("INDEPENDENT_SAMPLES", independent_samples);
     define("SPECTRAL", spectral);
+    define("HAS_POLARIZATION", polarization);
     define("HAS_DISPERSION", spectral && dispersion);
     if (spectral) define("SPECTRUM_COUNT", spectrum_count);
     if (spectral) define("COLOR_LATTICE", color_lattice);

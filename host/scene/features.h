@@ -24,6 +24,7 @@ struct Features {
     uint32_t body_count = 0;       // materials with a priority: paths count the bodies that they are inside
     bool straight = false;         // some surface lets light pass straight on: shadow rays go through
     bool spectral = false;         // paths carry wavelengths instead of colours
+    bool polarization = false;     // paths carry Stokes vectors
     bool dispersion = false;       // some refractive index depends on the wavelength
     uint32_t spectrum_count = 0;   // room for so many
     bool independent_samples = false;  // hashes take the place of Sobol' points

@@ -11,6 +11,13 @@ enum class ColorMode {
     spectral,   // four wavelengths a pass
 };
 
+// Whether they carry Stokes vectors, too.
+enum class PolarizationMode {
+    automatic,  // where the scene has something that polarizes light on purpose
+    on,
+    off,
+};
+
 // Where the random numbers of paths come from.
 enum class SampleSequence {
     sobol,        // Sobol' points, Owen-scrambled: the error falls faster than with independent numbers

@@ -52,7 +52,11 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
     const std::string& type = p.member.type;
     const uint32_t at = p.member.offset;
     const std::string place = message_place(resolver.scene, where);
-    if (type == "float") {
+    if (!p.choices.empty()) {
+        const auto chosen = std::find(p.choices.begin(), p.choices.end(), value.is_string() ? value.get<std::string>() : "");
+        if (chosen == p.choices.end()) fail_input("{}: {} is not allowed; allowed: {}", place, value.dump(), p.range());
+        store(record, at, uint32_t(chosen - p.choices.begin()));
+    } else if (type == "float") {
         store(record, at, checked_number(value, p, place));
     } else if (const int length = vector_length(type)) {
         if (!value.is_array() || int(value.size()) != length)

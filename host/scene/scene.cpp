@@ -59,8 +59,18 @@ Scene SceneCompiler::run() {
     add_textures();
     write_headers();
     measure_lights();
+    choose_polarization();
     choose_color();
     return std::move(out_);
+}
+
+// As choose_color(): what measures lights and materials does so without.
+void SceneCompiler::choose_polarization() {
+    bool polarizes = false;
+    for (const auto& [interface, classes] : out_.classes)
+        for (const ClassInfo* info : classes) polarizes |= info->polarizes;
+    out_.features.polarization = options_.polarization == PolarizationMode::on ||
+                                 (options_.polarization == PolarizationMode::automatic && polarizes);
 }
 
 // Classes are reflected at first use, which takes a compilation.

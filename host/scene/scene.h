@@ -81,6 +81,7 @@ struct SceneOptions {
     std::filesystem::path environment;   // image that takes the place of the scene's environment
     std::filesystem::path cache_folder;  // of compiled kernels; empty = none
     ColorMode color = ColorMode::automatic;
+    PolarizationMode polarization = PolarizationMode::automatic;
     bool spectral_image = false;  // that is asked for: automatic color is spectral
     // "surface/conductor/roughness": members that kernels read from the records even where all have the same.
     // "places": where things stand, which kernels of small scenes otherwise hold as numbers.

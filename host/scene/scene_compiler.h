@@ -61,6 +61,7 @@ class SceneCompiler {
     SpectralValue emitted_spectrum(const EmissionDescription& emission);
     void scale_emission(MaterialRecord& record, float scale);
     void choose_color();
+    void choose_polarization();
 
     // scene_materials.cpp
     void add_materials();

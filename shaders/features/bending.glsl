@@ -3,6 +3,7 @@
 // No straight ray connects what lies behind a bend: for light sampling, connections and their weights it is a smooth surface
 // that light has passed (features/mis.glsl), and shadow rays end where they meet such a medium.
 #include "features/dispersion.glsl"
+#include "features/polarization.glsl"
 #include "features/weights.glsl"
 #include "lib/path.glsl"
 #include "lib/primitives.glsl"
@@ -15,6 +16,11 @@ bool is_bent(Path path) { return path.bend.chord < INFINITY; }
 bool bends_rays(uint medium) { return medium_bends(medium); }
 
 float greatest_coordinate(vec3 p) { return max(abs(p.x), max(abs(p.y), abs(p.z))); }
+
+void direct(inout Path path, vec3 direction) {
+    turn_polarization(path, path.direction, direction);
+    path.direction = direction;
+}
 
 // Nothing samples or connects the next event from the one before.
 void forget_event(inout Path path) {
@@ -37,7 +43,7 @@ float begin_ray(inout Path path) {
         if (!(dot(path.origin, path.origin) > SCENE_RADIUS * SCENE_RADIUS && dot(path.origin, path.direction) > 0.0)) {
             path.bend.step = bent_step(medium, path.origin, path.direction, longest);
             path.bend.chord = length(path.bend.step.chord);
-            path.direction = path.bend.step.chord / path.bend.chord;
+            direct(path, path.bend.step.chord / path.bend.chord);
         }
     }
     // A little overlap, so that nothing falls between two steps.
@@ -48,7 +54,7 @@ float begin_ray(inout Path path) {
 // At `position`, on the chord or at its end: the path's direction is that of the bent ray there. Radiance changes with the
 // squared index on the way (Veach 1997, section 5.2).
 void turn(inout Path path, vec3 direction, vec3 position) {
-    path.direction = direction;
+    direct(path, direction);
     if (FORWARD == 0) {
         float index = medium_ior(path.around.medium, position);
         path.throughput *= dot(path.bend.step.start, path.bend.step.start) / (index * index);
@@ -78,7 +84,7 @@ bool end_step_at(inout Path path, SurfacePoint p, float distance) {
         float shortest = 64.0 * EPSILON * greatest_coordinate(path.origin) + 4.0 * dot(abs(p.geometric_normal), p.error);
         if (path.bend.chord > shortest) {
             path.bend.chord *= 0.5;
-            path.direction = normalize(path.bend.step.start);
+            direct(path, normalize(path.bend.step.start));
             return false;
         }
         direction = path.direction;  // so short that it is the same

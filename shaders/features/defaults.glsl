@@ -66,6 +66,9 @@
 #ifndef HAS_STRAIGHT
 #define HAS_STRAIGHT 0
 #endif
+#ifndef HAS_POLARIZATION
+#define HAS_POLARIZATION 0
+#endif
 #ifndef HAS_DISPERSION
 #define HAS_DISPERSION 0
 #endif
@@ -80,6 +83,13 @@
 #endif
 #ifndef SPECTRAL_BINS
 #define SPECTRAL_BINS 0
+#endif
+
+// Shadow rays may end at forward vertices, whose light is polarized.
+#if HAS_POLARIZATION && CONNECT_VERTICES
+#define HAS_POLARIZED_ENDS 1
+#else
+#define HAS_POLARIZED_ENDS 0
 #endif
 
 // Of kernels/find_hits.comp: any hit will do.

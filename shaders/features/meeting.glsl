@@ -34,7 +34,7 @@ struct Connection { vec3 wi; };
 #if MERGE_VERTICES
 #include "stages/meet_vertices.glsl"
 #elif CONNECT_VERTICES
-ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, Connection c, SurfacePair here, bool merges) {
+ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, Connection c, Scattering here, bool merges) {
     if (!connects_to(c, here)) return no_shadow_ray();
     ScatteringPoint there = forward_point(c, s);
     return connect_vertices(path, p, s, mis, c, here, there, scattering_pair(there, -c.direction * there.frame));

@@ -132,7 +132,7 @@ float others_of_hit(Path path, uint light, LightHit hit, float sampling) {
 bool hit_stands_alone(Path path) { return (path.flags & PATH_STARTS) != 0u; }
 
 // … of a light sample, by rays that hit the light and by forward paths.
-float others_of_light_sample(Path path, ScatteringPoint s, LightSample l, uint light, SurfacePair pair, VertexMis mis) {
+float others_of_light_sample(Path path, ScatteringPoint s, LightSample l, uint light, Scattering pair, VertexMis mis) {
     float by_hit = l.is_delta ? 0.0 : pair.pdf;
     float emission = l.emission_pdf * emitter_probability(light) * catch_density(s, l.direction);
     float reverse = pair.pdf_reverse * frame_probability(s, l.direction, -path.direction);
@@ -140,7 +140,7 @@ float others_of_light_sample(Path path, ScatteringPoint s, LightSample l, uint l
 }
 
 // … of a connection to the receiver, which has this importance there (of one pixel). Its rays do not merge in media where others do.
-float others_of_receiver_sample(Path path, ScatteringPoint s, vec3 direction, float importance, SurfacePair pair, VertexMis mis) {
+float others_of_receiver_sample(Path path, ScatteringPoint s, vec3 direction, float importance, Scattering pair, VertexMis mis) {
     float backward = importance * catch_density(s, direction) / float(forward_pass.count);
     float merging = mis.along ? 0.0 : mis.merging;
     return backward * (merging + connects(path) * mis.vcm + pair.pdf_reverse * mis.vc);

@@ -40,6 +40,7 @@ vec3 spectrum_rgb(Spectrum s) {
 }
 
 float luminance(Spectrum s) { return luminance(spectrum_rgb(s)); }
+Spectrum lane_wavelengths() { return wavelengths[batch_pass].nm; }  // nm
 // A mean that samplers weigh choices by, and that importance is counted in.
 float brightness(Spectrum s) { return dot(s, vec4(0.25)); }
 float max_component(Spectrum s) { return max(max(s.x, s.y), max(s.z, s.w)); }
@@ -119,6 +120,7 @@ void scale_spectrum(inout SpectrumRef ref, vec3 color) {
 void begin_pass(uint pass) {}
 const uint LANES = 3u;
 vec3 spectrum_rgb(Spectrum s) { return s; }
+Spectrum lane_wavelengths() { return vec3(611, 549, 464); }  // dominant ones of the channels, nm
 float brightness(Spectrum s) { return luminance(s); }
 float max_component(Spectrum s) { return max(s.x, max(s.y, s.z)); }
 Spectrum factor_of_rgb(vec3 rgb) { return rgb; }

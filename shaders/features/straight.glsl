@@ -1,5 +1,6 @@
 // Surfaces that let light pass straight on: alpha, index-matched boundaries, thin glass. Shadow rays go through.
 #include "features/bending.glsl"
+#include "features/polarization.glsl"
 #include "features/weights.glsl"
 #include "lib/path.glsl"
 #include "lib/scattering.glsl"
@@ -25,7 +26,7 @@ void pass_medium(inout ShadowRay shadow, float distance) {
 #endif
 
 // Whether all of a shadow ray's way is one search for a hit, any hit.
-const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0;
+const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0 && HAS_POLARIZED_ENDS == 0;
 
 #if HAS_STRAIGHT
 // Where a ray goes on behind a surface.
@@ -40,18 +41,19 @@ Spectrum follow_shadow_ray(ShadowRay shadow) {
         Hit hit = find_hit(shadow.origin, shadow.direction, t_left);
         bool met = hit.primitive != NO_RECORD;
         pass_medium(shadow, met ? hit.t : t_left);
-        if (!met) return weighed(shadow);
+        if (!met) return analysed(shadow, weighed(shadow));
         SurfacePoint p = locate(hit, shadow.origin, shadow.direction);
         Crossing sides = meet_faces(shadow.origin, shadow.direction, shadow.around, hit, p);
         if (is_there(sides)) {
             if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
             ScatteringPoint s = scattering_point(p, shadow.direction, sides);
             shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
+            polarize_passage(shadow, s);
             if (is_black(shadow.contribution)) return Spectrum(0);
         }
         vec3 origin = origin_behind(shadow.origin, p.position, p.error, p.geometric_normal, shadow.direction);
         t_left = t_left < INFINITY ? t_left - dot(origin - shadow.origin, shadow.direction) : INFINITY;
-        if (!(t_left > 0.0)) return weighed(shadow);
+        if (!(t_left > 0.0)) return analysed(shadow, weighed(shadow));
         shadow.origin = origin;
         shadow.around = surroundings_towards(sides, p, shadow.direction);
         if (bends_rays(shadow.around.medium)) return Spectrum(0);
@@ -64,6 +66,6 @@ Spectrum follow_shadow_ray(ShadowRay shadow) {
 Spectrum follow_shadow_ray(ShadowRay shadow) {
     if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return Spectrum(0);
     pass_medium(shadow, shadow.t_max);
-    return weighed(shadow);
+    return analysed(shadow, weighed(shadow));
 }
 #endif

@@ -34,9 +34,11 @@ ScatteringPoint volume_scattering_point(vec3 position, vec3 direction, Surroundi
     return s;
 }
 
-SurfacePair phase_pair(ScatteringPoint s, vec3 wi) {
+Scattering phase_pair(ScatteringPoint s, vec3 wi) {
     float value = phase_value(s.phase, wi.z);
-    return SurfacePair(Spectrum(value), value, value);
+    Scattering result = scattering_of(SurfacePair(Spectrum(value), value, value));
+    keep_mueller(result.mueller, phase_mueller(s.phase, s.context.importance ? s.wo : wi, s.context.importance ? wi : s.wo));
+    return result;
 }
 
 BsdfSample phase_event(ScatteringPoint s, vec2 u) {
@@ -61,7 +63,7 @@ bool scatter_within(inout Path path, inout Hit hit, MediumRay ray) {
 #define in_volume(s) false
 #define is_in_volume(v) false
 #define volume_point(position, direction) SurfacePoint(vec3(0), vec3(0), vec3(0), vec3(0), vec4(0), vec2(0), vec2(0), vec4(0), 0u, 0u)
-#define phase_pair(s, wi) no_surface_pair()
+#define phase_pair(s, wi) no_scattering()
 #define phase_event(s, u) no_bsdf_sample()
 #define scatters_rays(medium) false
 #define scatter_within(path, hit, ray) false

@@ -4,8 +4,11 @@
 //   float NAME_value(R r, float cosine)   1/sr, for light that is turned by an angle of that cosine (1 = it goes straight on);
 //                                         its integral over the sphere is 1
 //   float NAME_sample(R r, float u)       a cosine, for u in [0,1) spread evenly; directions around are equally likely
+//   Mueller NAME_mueller(R r, float cosine)   may be left out: what that does to polarization, with x across the plane of both
+//                                         directions (lib/stokes.glsl). Without it light is depolarized
 #include "lib/constants.glsl"
 #include "lib/records.glsl"
+#include "lib/stokes.glsl"
 
 #include "generated/phase_classes.glsl"
 
@@ -26,5 +29,18 @@ float phase_sample(uint ref, float u) {
         PHASE_CLASSES(CASE)
 #undef CASE
     }
+    return result;
+}
+
+// Of light that comes from `from` and goes to `to`, both away from the point.
+Mueller phase_mueller(uint ref, vec3 from, vec3 to) {
+    Mueller result = depolarizing();
+    float cosine = -dot(from, to);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_mueller(name##_record(record_index(ref)), cosine); break;
+        PHASE_CLASSES(CASE)
+#undef CASE
+    }
+    result.from = result.to = facet_axis(to, from);
     return result;
 }

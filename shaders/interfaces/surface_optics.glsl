@@ -13,11 +13,18 @@
 //                                                                   say false where only a texture makes it so
 //   bool       NAME_is_opaque(R r, SurfaceContext c)                 transparency is zero in every direction, whatever the
 //                                                                   textures and colors
+//   Mueller    NAME_mueller(R r, SurfaceContext c, vec3 from, vec3 to, uint event)   may be left out: what the event (0: one of
+//                                                                   `evaluate`) does to the polarization of light that comes
+//                                                                   from `from` and goes to `to`, both away from the surface
+//                                                                   (lib/stokes.glsl). Without it light is depolarized, and
+//                                                                   what passes straight on stays as it is
+//   NAME_POLARIZES, a macro, where light is polarized on purpose: scenes with the class carry polarization unless told otherwise
 //
 // wo is the direction where the path comes from, wi where it goes. c.importance tells the transport direction: false
 // carries radiance (backward rays: transmission scales by (ior on the side of wo / ior on the side of wi)², Veach 1997 eq. 5.12), true carries power.
 // Corrections for shading normals are made by the callers (lib/scattering.glsl), once for all classes.
 #include "features/defaults.glsl"
+#include "features/mueller.glsl"
 #include "lib/constants.glsl"
 #include "features/spectrum.glsl"
 #include "lib/records.glsl"
@@ -67,14 +74,45 @@ BsdfSample no_bsdf_sample() { return BsdfSample(vec3(0, 0, 1), Spectrum(0), 0.0,
 // What a class samples that is no delta event.
 BsdfSample scattered(vec3 wi, uint event) { return BsdfSample(wi, Spectrum(0), 0.0, event); }
 
+// Of classes that say nothing of polarization.
+Mueller unsaid_mueller(vec3 to, uint event) {
+    if ((event & EVENT_STRAIGHT) != 0u) return passing(to);
+    return depolarizing();
+}
+
 #include "generated/surface_classes.glsl"
 
+// What the algorithms see of a pair of directions.
+struct Scattering {
+    Spectrum value;     // as of SurfacePair
+    float pdf;
+    float pdf_reverse;
+    MEMBER_IF(HAS_POLARIZATION, Mueller mueller;)
+};
+
+Scattering scattering_of(SurfacePair pair) {
+    Scattering s;
+    s.value = pair.value, s.pdf = pair.pdf, s.pdf_reverse = pair.pdf_reverse;
+    no_mueller(s.mueller);
+    return s;
+}
+
+Scattering no_scattering() { return scattering_of(no_surface_pair()); }
+
+// Light comes from wo where paths carry power, else from wi.
+#define MUELLER_ALONG(name, r, c, wo, wi, event) name##_mueller(r, c, c.importance ? wo : wi, c.importance ? wi : wo, event)
+
 // Of a surface of any class, in a kernel for one class too.
-SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
-    SurfacePair result = no_surface_pair();
+Scattering surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
+    Scattering result = no_scattering();
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) \
-    case tag: result = name##_evaluate(name##_resolve(name##_record(record_index(ref)), c), c, wo, wi); break;
+#define CASE(tag, Struct, name)                                                  \
+    case tag: {                                                                  \
+        Struct r = name##_resolve(name##_record(record_index(ref)), c);          \
+        result = scattering_of(name##_evaluate(r, c, wo, wi));                   \
+        keep_mueller(result.mueller, MUELLER_ALONG(name, r, c, wo, wi, 0u));     \
+        break;                                                                   \
+    }
         ALL_SURFACE_CLASSES(CASE)
 #undef CASE
     }
@@ -84,13 +122,24 @@ SurfacePair surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
 // All of an event at once: scattering towards one or two directions, and a sample. The class is visited and its textures are read
 // once.
 struct SurfaceEvent {
-    SurfacePair pair, second;
+    Scattering pair, second;
     BsdfSample next;
     float next_pdf_reverse;
+    MEMBER_IF(HAS_POLARIZATION, Mueller next_mueller;)
 };
 
+SurfaceEvent no_surface_event() {
+    SurfaceEvent event;
+    event.pair = event.second = no_scattering();
+    event.next = no_bsdf_sample();
+    event.next_pdf_reverse = 0.0;
+    no_mueller(event.next_mueller);
+    return event;
+}
+
 // Weight and pdf of a sample, if it is no delta event, by its pair of directions.
-void complete(inout SurfaceEvent event, SurfacePair pair) {
+void complete(inout SurfaceEvent event, Scattering pair) {
+    keep_mueller(event.next_mueller, pair.mueller);
     if (event.next.event == EVENT_NONE || (event.next.event & EVENT_DELTA) != 0u) return;
     event.next.pdf = pair.pdf;
     event.next.weight = pair.pdf > 0.0 ? pair.value / pair.pdf : Spectrum(0);
@@ -100,7 +149,7 @@ void complete(inout SurfaceEvent event, SurfacePair pair) {
 
 // `asked` is 1 where nothing is wanted of the second direction, else 2.
 SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 second, uint asked, vec3 u) {
-    SurfaceEvent result = SurfaceEvent(no_surface_pair(), no_surface_pair(), no_bsdf_sample(), 0.0);
+    SurfaceEvent result = no_surface_event();
     switch (record_tag(ref)) {
 // A loop over all directions, so that the code of `evaluate` stands once.
 #define CASE(tag, Struct, name)                                                              \
@@ -109,7 +158,9 @@ SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 se
         result.next = name##_sample(r, c, wo, u);                                           \
         for (uint i = 0u; i <= asked; ++i) {                                                \
             vec3 towards = i == asked ? result.next.wi : i == 0u ? wi : second;             \
-            SurfacePair pair = name##_evaluate(r, c, wo, towards);                          \
+            Scattering pair = scattering_of(name##_evaluate(r, c, wo, towards));            \
+            uint event = i == asked ? result.next.event : 0u;                               \
+            keep_mueller(pair.mueller, MUELLER_ALONG(name, r, c, wo, towards, event));      \
             if (i == asked) complete(result, pair);                                         \
             else if (i == 0u) result.pair = pair;                                           \
             else result.second = pair;                                                      \
@@ -128,6 +179,22 @@ Spectrum surface_transparency(uint ref, SurfaceContext c, vec3 wo) {
     Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_transparency(name##_resolve(name##_record(record_index(ref)), c), c, wo); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+// What that does to polarization; light comes from `from`.
+Mueller surface_transparency_mueller(uint ref, SurfaceContext c, vec3 from) {
+    Mueller result = depolarizing();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name)                                                          \
+    case tag: {                                                                         \
+        Struct r = name##_resolve(name##_record(record_index(ref)), c);                 \
+        result = name##_mueller(r, c, from, -from, EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT); \
+        break;                                                                          \
+    }
         SURFACE_CLASSES(CASE)
 #undef CASE
     }

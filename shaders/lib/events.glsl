@@ -1,6 +1,7 @@
 // What befalls a path at a surface or within a medium, whichever way it goes.
 #include "features/bending.glsl"
 #include "features/mis.glsl"
+#include "features/polarization.glsl"
 #include "features/recording.glsl"
 #include "features/straight.glsl"
 
@@ -15,8 +16,10 @@ bool cross_medium(inout Path path, inout Hit hit) {
     return false;
 }
 
-// A ray from p that ends short of what lies at `distance` along `direction`. `others`: see weigh().
-ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float distance, Spectrum contribution, float others) {
+// A ray from p that ends short of what lies at `distance` along `direction`, where the path scatters by `pair`. `others`: see
+// weigh().
+ShadowRay shadow_ray(Path path, SurfacePoint p, ScatteringPoint s, Scattering pair, vec3 direction, float distance,
+                     Spectrum contribution, float others) {
     ShadowRay shadow = no_shadow_ray();
     shadow.contribution = contribution;
     shadow.origin = offset_origin(p.position, p.error, p.geometric_normal, direction);
@@ -24,6 +27,8 @@ ShadowRay shadow_ray(SurfacePoint p, ScatteringPoint s, vec3 direction, float di
     shadow.t_max = distance >= INFINITY ? INFINITY : max(0.0, shadow_t_max(shadow.origin, distance));
     shadow.around = surroundings_towards(s, direction);
     if (bends_rays(shadow.around.medium)) shadow.t_max = 0.0;
+    polarize_shadow(shadow, path, s, pair.mueller);
+    end_unpolarized(shadow);
     weigh(shadow, others);
     weigh_apart(shadow, 0.0);
     return shadow;
@@ -47,6 +52,7 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
     event.next_pdf_reverse *= frame_probability(s, direction, -path.direction);
 #endif
     path.throughput *= b.weight;
+    polarize(path, s, event.next_mueller, direction);
     if (!straight) {
         // What goes straight on stays a candidate for light sampling at the event before.
         update_mis(path, mis, s.material, b, event.next_pdf_reverse, catch_density(s, direction));

@@ -4,7 +4,11 @@
 #include "lib/octahedral.glsl"
 #include "lib/records.glsl"
 
-struct LightVertex {  // 64 bytes; 4 more with wavelengths, of which there are four, and 4 with bodies that have priorities
+const uint POLARIZATION_WORDS = (3u * LANES + 1u) / 2u;
+struct PackedPolarization { uint words[POLARIZATION_WORDS]; };  // features/polarization.glsl
+
+// 64 bytes; 4 more with wavelengths, of which there are four, 4 with bodies that have priorities, 20 or 24 with polarization.
+struct LightVertex {
     vec3 position;    // m
     float vcm;        // dVCM of Georgiev 2012, "Implementing Vertex Connection and Merging"
     Spectrum throughput;  // relative flux
@@ -15,6 +19,7 @@ struct LightVertex {  // 64 bytes; 4 more with wavelengths, of which there are f
     vec2 uv;
     uint primitive;   // NO_RECORD within a medium
     uint previous;    // light_vertex_link
+    MEMBER_IF(HAS_POLARIZATION, PackedPolarization polarization;)
     MEMBER_IF(HAS_PRIORITIES, uint medium_above;)  // on the side of the normal (features/bodies.glsl)
 };
 

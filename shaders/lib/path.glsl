@@ -5,6 +5,7 @@
 #include "lib/bent_step.glsl"
 #include "lib/member_if.glsl"
 #include "lib/sampler.glsl"
+#include "lib/stokes.glsl"
 
 // Where the next ray is a step of a bent one (features/bending.glsl).
 struct Bend {
@@ -29,6 +30,7 @@ struct Path {
 #else
     Spectrum radiance;    // collected so far
 #endif
+    MEMBER_IF(HAS_POLARIZATION, Polarization polarization;)  // features/polarization.glsl
     MEMBER_IF(HAS_BENDING, Bend bend;)
     MEMBER_IF(HAS_SCATTERING, float passage;)  // of scattering media since the reference (features/weights.glsl)
     MEMBER_IF(BIDIRECTIONAL, float vcm;)       // features/mis.glsl
@@ -56,6 +58,8 @@ struct ShadowRay {
     uint target;            // what it contributes to: forward the pixel; backward the slot of its path (lib/wavefront.glsl)
     Spectrum contribution;
     Surroundings around;
+    MEMBER_IF(HAS_POLARIZATION, Polarization polarization;)
+    MEMBER_IF(HAS_POLARIZED_ENDS, Polarization end;)  // of the light that leaves its end
     MEMBER_IF(HAS_SCATTERING, float others;)  // of weigh(): the passage is known once the ray is traced
     MEMBER_IF(BEAMS, float others_apart;)     // that need no passage
 };

@@ -130,7 +130,7 @@ float catch_density(ScatteringPoint s, vec3 direction) {
 bool is_delta_point(ScatteringPoint s) { return !in_volume(s) && surface_is_delta(s.surface, s.context); }
 
 // Of a surface of any class, in a kernel for one class too.
-SurfacePair scattering_pair(ScatteringPoint s, vec3 wi) {
+Scattering scattering_pair(ScatteringPoint s, vec3 wi) {
     if (in_volume(s)) return phase_pair(s, wi);
     return surface_pair(s.surface, s.context, s.wo, wi);
 }
@@ -143,6 +143,7 @@ SurfaceEvent scattering_event(ScatteringPoint s, vec3 wi, vec3 second, uint aske
         event.second = phase_pair(s, second);
         event.next = phase_event(s, u.xy);
         event.next_pdf_reverse = event.next.pdf;
+        keep_mueller(event.next_mueller, phase_pair(s, event.next.wi).mueller);
     }
     return event;
 }

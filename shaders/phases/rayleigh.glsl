@@ -1,4 +1,4 @@
-// Particles much smaller than the wavelength, unpolarized (Rayleigh 1871): 3 (1 + cos²) / (16 pi).
+// Particles much smaller than the wavelength (Rayleigh 1871): 3 (1 + cos²) / (16 pi). Light scattered sideways is polarized.
 //
 // Example:
 //     {"extensions": {"ETD_optics": {"media": [
@@ -16,4 +16,10 @@ float rayleigh_sample(Rayleigh r, float u) {
     float root = pow(abs(v) + sqrt(v * v + 1.0), 1.0 / 3.0);
     float cosine = root - 1.0 / root;
     return clamp(v < 0.0 ? -cosine : cosine, -1.0, 1.0);
+}
+
+// Chandrasekhar 1960, "Radiative Transfer", section 16, with x across the plane.
+Mueller rayleigh_mueller(Rayleigh r, float cosine) {
+    float inverse = 1.0 / (1.0 + cosine * cosine);
+    return phase_plate(vec3(1, 0, 0), Spectrum((1.0 - cosine * cosine) * inverse), Spectrum(2.0 * cosine * inverse), Spectrum(0));
 }

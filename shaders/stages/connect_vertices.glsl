@@ -21,7 +21,7 @@ Connection no_connection(vec3 wi) {
 }
 
 // `here`: scattering at the backward vertex towards the forward one.
-bool connects_to(Connection c, SurfacePair here) { return c.is_there && !is_black(here.value); }
+bool connects_to(Connection c, Scattering here) { return c.is_there && !is_black(here.value); }
 
 // `random`: of the path.
 Connection choose_vertex(inout Sampler random, SurfacePoint p, ScatteringPoint s) {
@@ -59,8 +59,8 @@ ScatteringPoint forward_point(Connection c, ScatteringPoint s) {
 }
 
 // `here` and `away`: scattering at both ends, `away` at `there`.
-ShadowRay connect_vertices(Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, Connection c, SurfacePair here,
-                           ScatteringPoint there, SurfacePair away) {
+ShadowRay connect_vertices(Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, Connection c, Scattering here,
+                           ScatteringPoint there, Scattering away) {
     vec3 light_direction = decode_octahedral(c.y.direction);
     float frame = frame_probability(there, light_direction, -c.direction);
     if (!(frame > 0.0)) return no_shadow_ray();
@@ -90,7 +90,8 @@ ShadowRay connect_vertices(Path path, SurfacePoint p, ScatteringPoint s, VertexM
                             (adjoint_correction(there, light_direction, -c.direction) * flux / distance_squared *
                              meeting_share(path, c.y.previous));
     ShadowRay shadow =
-        shadow_ray(p, s, c.direction, c.distance, contribution, (by_backward + by_forward) / CONNECTION_SHARE);
+        shadow_ray(path, p, s, here, c.direction, c.distance, contribution, (by_backward + by_forward) / CONNECTION_SHARE);
+    polarize_end(shadow, c.y, there, away.mueller);
     weigh_apart(shadow, merging_apart / CONNECTION_SHARE);
     return shadow;
 }

@@ -1,6 +1,7 @@
 // Starts a backward path: a point of the pixel (box filter), the receiver's ray through it.
 #include "features/bending.glsl"
 #include "features/bias.glsl"
+#include "features/polarization.glsl"
 #include "features/start_media.glsl"
 #include "features/weights.glsl"
 #include "interfaces/receiver.glsl"
@@ -21,6 +22,7 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.around = around_receiver();
     path.depth = 0u;
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
+    start_polarization(path);
     start_bending(path);
     start_passage(path);
     start_weights(path, float(forward_pass.count) * ray.connect_pdf / (ray.density * float(size.x) * float(size.y)), 0.0);

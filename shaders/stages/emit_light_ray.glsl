@@ -1,6 +1,7 @@
 // Starts a forward path: a light chosen by its power, a ray that it sends. Throughput 0 where there is none.
 #include "features/bending.glsl"
 #include "features/mis.glsl"
+#include "features/polarization.glsl"
 #include "features/recording.glsl"
 #include "features/start_media.glsl"
 #include "interfaces/light_source.glsl"
@@ -25,6 +26,7 @@ Path emit_light_ray(uint index) {
     path.depth = 0u;
     path.flags = PATH_STARTS;
     path.vertices = uvec2(NO_RECORD, 0u);
+    start_polarization(path);
     start_bending(path);
     start_passage(path);
     start_forward_weights(path, density, ray.is_delta, light, ray.normal);

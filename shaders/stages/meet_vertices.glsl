@@ -6,7 +6,7 @@
 #include "stages/merge_vertices.glsl"
 
 // `here`: scattering at the backward vertex towards the forward one.
-ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, Connection c, SurfacePair here,
+ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, Connection c, Scattering here,
                         bool merges) {
     ShadowRay shadow = no_shadow_ray();
     bool connects = connects_to(c, here);
@@ -26,7 +26,7 @@ ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, Vert
             at = s;
             if (!merges_with(merging, p, s, y, wi)) continue;
         }
-        SurfacePair pair = scattering_pair(at, wi);
+        Scattering pair = scattering_pair(at, wi);
         if (connects) shadow = connect_vertices(path, p, s, mis, c, here, there, pair);
         else merge_vertex(merging, path, p, s, mis, y, pair);
         connects = false;

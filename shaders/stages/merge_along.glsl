@@ -61,6 +61,7 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
         float weight = meeting_share(path, y.previous) * mis.merging / (mis.merging + others);
         if (t > sure) weight /= max(dot(share, passage_along(path, t - sure).transmittance), 1e-30);
         Spectrum brought = passage.transmittance * y.throughput * (weight * value / (PI * square(radius)));
+        polarize_merging(brought, path, s, phase_mueller(s.phase, decode_octahedral(y.direction) * s.frame, s.wo), y);
         if (2.0 * dot(aside, aside) < square(radius)) inner += brought;
         else outer += brought;
     }

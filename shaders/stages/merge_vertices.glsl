@@ -38,7 +38,7 @@ bool merges_with(Merging m, SurfacePoint p, ScatteringPoint s, LightVertex y, ou
     return lies_on_same(p, s, y, m.radius) && is_on_one_side(s, light_direction, wi);
 }
 
-void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, LightVertex y, SurfacePair pair) {
+void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, LightVertex y, Scattering pair) {
     vec3 light_direction = decode_octahedral(y.direction);
     vec3 d = y.position - p.position;
     float cosine = in_volume(s) ? 1.0 : dot(light_direction, s.normal);
@@ -46,6 +46,7 @@ void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s,
     float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
     Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));
     brought *= meeting_share(path, y.previous);
+    polarize_merging(brought, path, s, pair.mueller, y);
     if (2.0 * dot(d, d) < square(m.radius)) m.inner += brought;
     else m.outer += brought;
 }

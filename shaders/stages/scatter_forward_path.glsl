@@ -4,7 +4,7 @@
 #include "stages/arrive.glsl"
 
 // The ray that brings light from the point to the receiver.
-ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, ReceiverSample r, SurfacePair pair,
+ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, ReceiverSample r, Scattering pair,
                            VertexMis mis) {
     float frame = frame_probability(s, -path.direction, r.direction);
     if (is_black(pair.value) || !is_seen_from(s, r.direction) || !(frame > 0.0)) return no_shadow_ray();
@@ -12,7 +12,7 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
     float others = others_of_receiver_sample(path, s, r.direction, importance, pair, mis);
     Spectrum contribution = path.throughput * pair.value *
                             (adjoint_correction(s, -path.direction, r.direction) / frame * importance * forward_pass.path_flux);
-    ShadowRay shadow = shadow_ray(p, s, r.direction, r.distance, contribution, others);
+    ShadowRay shadow = shadow_ray(path, p, s, pair, r.direction, r.distance, contribution, others);
     uvec2 size = uvec2(forward_pass.width, forward_pass.height);
     uvec2 pixel = min(uvec2(r.film * vec2(size)), size - 1u);
     shadow.target = pixel.y * size.x + pixel.x;

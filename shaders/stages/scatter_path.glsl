@@ -50,10 +50,10 @@ LightSample sample_light(inout Sampler random, vec3 position, out uint light) {
 }
 
 // The shadow ray for a light sample, given how the surface scatters between it and the path.
-ShadowRay connect_light(Path path, SurfacePoint p, ScatteringPoint s, LightSample l, uint light, SurfacePair pair, VertexMis mis) {
+ShadowRay connect_light(Path path, SurfacePoint p, ScatteringPoint s, LightSample l, uint light, Scattering pair, VertexMis mis) {
     if (!(l.pdf > 0.0) || is_black(l.radiance) || is_black(pair.value)) return no_shadow_ray();
     float others = others_of_light_sample(path, s, l, light, pair, mis);
-    return shadow_ray(p, s, l.direction, l.distance, path.throughput * pair.value * l.radiance / l.pdf, others);
+    return shadow_ray(path, p, s, pair, l.direction, l.distance, path.throughput * pair.value * l.radiance / l.pdf, others);
 }
 
 // Returns whether the path goes on; the shadow rays are to be traced in either case.

@@ -76,6 +76,26 @@ BsdfSample conductor_sample(Conductor r, SurfaceContext c, vec3 wo, vec3 u) {
     return scattered(vec3(wi.xy, wi.z * side), EVENT_REFLECT);
 }
 
+// What facets reflect more often than once keeps no polarization. A given reflectance is that of a mirror for s and p alike.
+Mueller conductor_mueller(Conductor r, SurfaceContext c, vec3 from, vec3 to, uint event) {
+    float side = from.z < 0.0 ? -1.0 : 1.0;
+    bool smooth_surface = r.alpha < SMOOTH_ALPHA;
+    vec3 h = smooth_surface ? vec3(0, 0, side) : normalize(from + to);
+    float inv_ior = 1.0 / (side < 0.0 ? c.ior_below : c.ior_above);
+    float cosine = dot(from, h);
+    Spectrum eta = untinted_value(r.eta) * inv_ior, k = untinted_value(r.k) * inv_ior;
+    Mueller m = fresnel_conductor_mueller(facet_axis(to, h), cosine, eta, k);
+    Spectrum reflectance = untinted_value(r.reflectance);
+    Mueller mirror = phase_plate(m.from, Spectrum(0), Spectrum(-1), Spectrum(0));
+    for (int i = 1; i < 16; ++i) m.m[i] = mix(m.m[i], mirror.m[i], greaterThanEqual(reflectance, Spectrum(0)));
+    if (!r.multiscatter || smooth_surface) return m;
+    from.z *= side, to.z *= side, h.z *= side;
+    Spectrum single = conductor_fresnel(r, c, side, cosine) * ggx_reflection(from, to, h, r.alpha);
+    Spectrum more = conductor_multiscatter_tint(r, c, side) *
+                    (ggx_loss(from.z, r.alpha) * ggx_loss(to.z, r.alpha) * to.z / (PI * ggx_average_loss(r.alpha)));
+    return partly(m, single / max(single + more, Spectrum(1e-30)));
+}
+
 Spectrum conductor_transparency(Conductor r, SurfaceContext c, vec3 wo) { return Spectrum(0); }
 bool conductor_is_delta(Conductor r, SurfaceContext c) { return r.alpha < SMOOTH_ALPHA; }
 bool conductor_is_opaque(Conductor r, SurfaceContext c) { return true; }

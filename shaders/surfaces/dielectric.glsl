@@ -114,6 +114,28 @@ BsdfSample dielectric_sample(Dielectric r, SurfaceContext c, vec3 wo, vec3 u) {
     return scattered(vec3(wi.xy, wi.z * side), reflects ? EVENT_REFLECT : EVENT_TRANSMIT);
 }
 
+Mueller dielectric_mueller(Dielectric r, SurfaceContext c, vec3 from, vec3 to, uint event) {
+    float side = from.z < 0.0 ? -1.0 : 1.0;
+    from.z *= side, to.z *= side;
+    float eta = dielectric_eta(c, side);
+    bool reflects = to.z > 0.0, smooth_surface = dielectric_is_delta(r, c);
+    if (eta == 1.0) return passing(vec3(to.xy, to.z * side));
+    vec3 h = vec3(0, 0, 1);
+    if (!smooth_surface) h = reflects ? reflection_normal(from, to) : refraction_normal(from, to, eta);
+    float cosine = dot(from, h);
+    h.z *= side, to.z *= side;
+    Mueller m = fresnel_dielectric_mueller(facet_axis(to, h), cosine, eta, reflects);
+    if (!r.multiscatter || smooth_surface) return m;
+    to.z *= side, h.z *= side;
+    float f = fresnel_dielectric(cosine, eta);
+    float single = reflects ? f * ggx_reflection_pdf(from, h, r.alpha) : (1.0 - f) * ggx_refraction_pdf(from, to, h, r.alpha, eta);
+    single *= ggx_g1(abs(to.z), r.alpha);
+    float all = single;
+    vec2 unused = vec2(0);
+    dielectric_multiscatter(r, vec2(from.z, abs(to.z)), reflects, eta, all, unused);
+    return partly(m, Spectrum(single / max(all, 1e-30)));
+}
+
 Spectrum dielectric_transparency(Dielectric r, SurfaceContext c, vec3 wo) {
     return Spectrum(c.ior_above == c.ior_below ? 1.0 : 0.0);
 }

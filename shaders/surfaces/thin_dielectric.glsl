@@ -27,6 +27,25 @@ BsdfSample thin_dielectric_sample(ThinDielectric r, SurfaceContext c, vec3 wo, v
                       reflects ? EVENT_REFLECT | EVENT_DELTA : EVENT_TRANSMIT | EVENT_DELTA | EVENT_STRAIGHT);
 }
 
+// The echoes add up incoherently, each with its own matrix: light at 45 degrees is turned by all reflections within.
+Mueller thin_dielectric_mueller(ThinDielectric r, SurfaceContext c, vec3 from, vec3 to, uint event) {
+    float eta = r.ior / (from.z < 0.0 ? c.ior_below : c.ior_above);
+    float cosine = clamp(abs(from.z), 1e-7, 1.0);
+    float g2 = (eta - 1.0) * (eta + 1.0) + cosine * cosine;
+    vec3 axis = facet_axis(to, vec3(0, 0, 1));
+    bool reflects = from.z * to.z > 0.0;
+    if (g2 <= 0.0) return fresnel_dielectric_mueller(axis, cosine, eta, reflects);
+    float g = sqrt(g2);
+    vec2 amplitudes = vec2((cosine - g) / (cosine + g), (eta * eta * cosine - g) / (eta * eta * cosine + g));
+    vec2 reflected = amplitudes * amplitudes;
+    float turned = amplitudes.x * amplitudes.y;  // by a reflection
+    float passed = (1.0 - reflected.x) * (1.0 - reflected.y) / (1.0 - turned * turned);
+    vec2 parts = reflects ? 2.0 * reflected / (1.0 + reflected) : (1.0 - reflected) / (1.0 + reflected);
+    float kept = reflects ? turned * (1.0 + passed) : passed;
+    float inverse = 1.0 / max(parts.x + parts.y, 1e-30);
+    return phase_plate(axis, Spectrum((parts.x - parts.y) * inverse), Spectrum(2.0 * kept * inverse), Spectrum(0));
+}
+
 Spectrum thin_dielectric_transparency(ThinDielectric r, SurfaceContext c, vec3 wo) {
     return Spectrum(1.0 - thin_dielectric_reflectance(r, c, wo));
 }

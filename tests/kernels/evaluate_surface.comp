@@ -5,7 +5,7 @@ layout(local_size_x = 64) in;
 
 struct Pair { vec3 wo, wi; };
 layout(scalar, set = 0) readonly buffer Pairs { Pair pairs[]; };
-layout(scalar, set = 0) writeonly buffer Values { SurfacePair values[]; };
+layout(scalar, set = 0) writeonly buffer Values { Scattering values[]; };
 layout(push_constant) uniform Push {
     uint count, surface;
     float ior_above, ior_below;

@@ -1,0 +1,211 @@
+// Polarized light seen through sheets and by mirrors, against closed forms; and all algorithms against each other.
+//
+// A camera of a narrow field looks along -z at a white environment, through sheets across its way. What a polarizer, with or without
+// a wave plate behind it, lets through tells the Stokes vector that comes to it.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <functional>
+#include <glm/gtc/quaternion.hpp>
+
+#include "tests/renders/agreement_scenes.h"
+#include "tests/renders/algorithm_comparison.h"
+#include "tests/support/source_path.h"
+
+using namespace etendue;
+
+namespace {
+
+using json = nlohmann::json;
+using glm::dvec3, glm::dvec4;
+
+constexpr double pi = std::numbers::pi, degree = pi / 180;
+
+json polarizer(double axis) { return {{"class", "linear_polarizer"}, {"axis", axis}}; }
+json wave_plate(double axis, double retardance) {
+    return {{"class", "retarder"}, {"axis", axis}, {"retardance", retardance}};
+}
+
+// A rectangle's +z axis towards n, its x axis as near to `x` as may be.
+Place facing(const dvec3& position, const dvec3& n, const dvec3& x) {
+    const dvec3 z = glm::normalize(n), y = glm::normalize(glm::cross(z, x));
+    const glm::dquat q = glm::quat_cast(glm::dmat3(glm::cross(y, z), y, z));
+    return {position, {q.x, q.y, q.z, q.w}};
+}
+
+// Sheets are met in their order; the last is the farthest from the camera.
+void add_sheets(SceneBuilder& s, const std::vector<json>& sheets, const dvec3& normal = {0, 0, 1},
+                const dvec3& x = {1, 0, 0}) {
+    for (size_t i = 0; i < sheets.size(); ++i)
+        s.rectangle(0.4, 0.4, s.surface(sheets[i]), facing({0, 0, -0.2 - 0.02 * double(i)}, normal, x));
+}
+
+// Russian roulette makes noise where little is left.
+WindowMean seen(const SceneBuilder& s, PolarizationMode mode = PolarizationMode::automatic, uint32_t pixels = 32) {
+    SceneOptions options;
+    options.shaders = source_path("shaders");
+    options.cache_folder = default_cache_folder();
+    options.polarization = mode;
+    options.color = ColorMode::rgb;
+    Scene scene = compile_scene(test_device(), s.import(), options);
+    RenderPlan plan;
+    plan.width = plan.height = pixels;
+    return window_mean(render_estimates(scene, plan));
+}
+
+void check_seen(const WindowMean& found, double expected) {
+    CAPTURE(found.mean);
+    CAPTURE(found.standard_error);
+    CAPTURE(expected);
+    CHECK(std::fabs(found.mean - expected) < 1e-5 + 5 * found.standard_error);
+    CHECK(found.standard_error < 1e-5 + 0.02 * expected);
+}
+
+SceneBuilder white() {
+    SceneBuilder s;
+    s.environment(1);
+    s.perspective(1e-3, at(0, 0, 0));
+    return s;
+}
+
+WindowMean through(const std::vector<json>& sheets) {
+    SceneBuilder s = white();
+    add_sheets(s, sheets);
+    return seen(s);
+}
+
+// Six analysers before the camera of a scene.
+std::array<WindowMean, 4> stokes(const SceneBuilder& scene) {
+    const auto analysed = [&](const std::vector<json>& sheets) {
+        SceneBuilder s = scene;
+        for (size_t i = 0; i < sheets.size(); ++i)
+            s.rectangle(0.02, 0.02, s.surface(sheets[i]), at(0, 0, -0.05 - 0.01 * double(i)));
+        return seen(s);
+    };
+    const auto linear = [&](double axis) { return analysed({polarizer(axis)}); };
+    // Right-handed light: S3 becomes S2 < 0 where the slow axis is x.
+    const auto circular = [&](double axis) { return analysed({polarizer(axis), wave_plate(0, pi / 2)}); };
+    const auto sum = [](const WindowMean& a, const WindowMean& b, double sign) {
+        return WindowMean{a.mean + sign * b.mean, std::hypot(a.standard_error, b.standard_error)};
+    };
+    return {sum(linear(0), linear(pi / 2), 1), sum(linear(0), linear(pi / 2), -1), sum(linear(pi / 4), linear(-pi / 4), -1),
+            sum(circular(-pi / 4), circular(pi / 4), -1)};
+}
+
+void check_stokes(const std::array<WindowMean, 4>& found, const dvec4& expected) {
+    for (int i = 0; i < 4; ++i) {
+        CAPTURE(i);
+        CAPTURE(found[i].mean);
+        CAPTURE(found[i].standard_error);
+        CHECK(std::fabs(found[i].mean - expected[i]) < 1e-5 + 5 * found[i].standard_error);
+        CHECK(found[i].standard_error < 3e-4);
+    }
+}
+
+// Absorbs at once whatever it refracts.
+int glass_mirror(SceneBuilder& s) {
+    if (!s.optics().contains("media")) s.medium("ink", {{"class", "homogeneous"}, {"ior", 1.5}, {"absorption", 1e7}});
+    return s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "ink"}});
+}
+
+// The camera sees a mirror that reflects its view from -z to +y, and another that does from there to `out`.
+SceneBuilder two_mirrors(const std::function<int(SceneBuilder&)>& mirror, const dvec3& out, double incidence = 45 * degree) {
+    SceneBuilder s = white();
+    const double turn = pi - 2 * incidence;  // of the view
+    const dvec3 in(0, 0, -1), between(0, std::sin(turn), -std::cos(turn));
+    s.rectangle(0.3, 0.3, mirror(s), facing({0, 0, -1}, between - in, {1, 0, 0}));
+    s.rectangle(0.3, 0.3, mirror(s), facing(dvec3(0, 0, -1) + between, out - between, {1, 0.1, 0}));
+    return s;
+}
+
+}  // namespace
+
+TEST_CASE("polarizers in a row let through what Malus says") {
+    check_seen(through({polarizer(0.3)}), 0.5);
+    for (double a : {0.0, 20.0, 45.0, 70.0, 90.0})
+        check_seen(through({polarizer(0), polarizer(a * degree)}), 0.5 * std::pow(std::cos(a * degree), 2));
+    check_seen(through({polarizer(0), polarizer(pi / 4), polarizer(pi / 2)}), 0.125);
+    std::vector<json> fan;
+    for (int i = 0; i <= 10; ++i) fan.push_back(polarizer(i * 9 * degree));
+    check_seen(through(fan), 0.5 * 0.780546);
+    json real = polarizer(0), crossed = polarizer(pi / 2);
+    for (json* sheet : {&real, &crossed}) (*sheet)["parallel"] = 0.8, (*sheet)["crossed"] = 0.05;
+    check_seen(through({real, real}), 0.5 * (0.64 + 0.0025));
+    check_seen(through({real, crossed}), 0.04);
+    check_seen(through({polarizer(0), {{"class", "depolarizer"}}, polarizer(pi / 2)}), 0.25);
+}
+
+TEST_CASE("crossed polarizers leak at an angle") {
+    for (const char* kind : {"absorbing", "transmitting"})
+        for (const auto& [angle, leak] : {std::pair{60.0, 0.36}, {45.0, 1.0 / 9}, {30.0, 0.020408}}) {
+            json first = polarizer(0), second = polarizer(pi / 2);
+            first["kind"] = second["kind"] = kind;
+            SceneBuilder s = white();
+            // The plane of incidence lies between both axes.
+            const dvec3 n(std::sin(angle * degree), 0, std::cos(angle * degree));
+            const dvec3 p = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), n));
+            add_sheets(s, {first, second}, n, p + glm::dvec3(0, 1, 0));
+            CAPTURE(kind);
+            CAPTURE(angle);
+            check_seen(seen(s), 0.5 * leak);
+        }
+}
+
+TEST_CASE("wave plates between polarizers") {
+    for (double g : {0.5, pi / 2, 2.0, pi, 5.0}) {
+        check_seen(through({polarizer(0), wave_plate(pi / 4, g), polarizer(pi / 2)}), 0.5 * std::pow(std::sin(g / 2), 2));
+        check_seen(through({polarizer(0), wave_plate(pi / 4, g), polarizer(0)}), 0.5 * std::pow(std::cos(g / 2), 2));
+    }
+    // One seen from behind undoes the other: its axis is mirrored, slow becomes fast.
+    SceneBuilder s = white();
+    add_sheets(s, {polarizer(0), wave_plate(pi / 4, pi / 2)});
+    s.rectangle(0.4, 0.4, s.surface(wave_plate(pi / 4, pi / 2)), facing({0, 0, -0.3}, {0, 0, -1}, {1, 0, 0}));
+    s.rectangle(0.4, 0.4, s.surface(polarizer(0)), at(0, 0, -0.32));
+    check_seen(seen(s), 0.5);
+    // A plate of quartz by its thickness; at 30 degrees in the plane of the axis and across it.
+    const auto quartz = [](double thickness) {
+        return json{{"class", "retarder"}, {"ior_ordinary", 1.5443}, {"ior_extraordinary", 1.5534}, {"thickness", thickness}};
+    };
+    const double nm = 611, g0 = 2 * pi / nm * 16190 * (1.5534 - 1.5443);  // of the channel red
+    for (const auto& [azimuth, ratio] : {std::pair{0.0, 0.94612}, {90.0, 1.0566}}) {
+        SceneBuilder tilted = white();
+        const dvec3 n(std::sin(30 * degree), 0, std::cos(30 * degree)), p = glm::normalize(glm::cross(dvec3(0, 1, 0), n));
+        const dvec3 x = azimuth == 0 ? p : dvec3(0, 1, 0);
+        add_sheets(tilted, {quartz(16190)}, n, x);
+        for (int i = 0; i < 2; ++i)
+            tilted.rectangle(0.02, 0.02, tilted.surface(polarizer((i ? -1 : 1) * pi / 4)), at(0, 0, i ? -0.05 : -0.6));
+        SceneOptions options;
+        options.shaders = source_path("shaders");
+        options.cache_folder = default_cache_folder();
+        Scene scene = compile_scene(test_device(), tilted.import(), options);
+        RenderPlan plan;
+        plan.width = plan.height = 32;
+        CAPTURE(azimuth);
+        const WindowMean red = window_mean(render_estimates(scene, plan), {}, 0);
+        CHECK(std::fabs(red.mean - 0.5 * std::pow(std::sin(0.5 * g0 * ratio), 2)) < 1e-4 + 5 * red.standard_error);
+    }
+}
+
+TEST_CASE("a circular polarizer before a mirror is black, before white paper it is not") {
+    SceneBuilder s = white();
+    add_sheets(s, {polarizer(0), wave_plate(pi / 4, pi / 2)});
+    SceneBuilder paper = s;
+    s.rectangle(0.4, 0.4, s.surface({{"class", "conductor"}}), at(0, 0, -1));
+    check_seen(seen(s), 0);
+    // The same without the wave plate: light passes the polarizer twice. The mirror is too small to see past the sheets.
+    paper.rectangle(0.01, 0.01, paper.surface({{"class", "depolarizer"}}), at(0, 0, -0.9));
+    paper.rectangle(0.4, 0.4, paper.surface({{"class", "conductor"}}), at(0, 0, -1));
+    check_seen(seen(paper), 0.25);
+}
+
+TEST_CASE("two mirrors of glass reflect by their planes") {
+    check_seen(seen(two_mirrors(glass_mirror, {0, 0, 1}), PolarizationMode::on, 160), 0.004269070);
+    check_seen(seen(two_mirrors(glass_mirror, {1, 0, 0}), PolarizationMode::on, 160), 0.000779027);
+    check_seen(seen(two_mirrors(glass_mirror, {1, 0, 0}), PolarizationMode::automatic, 160), 0.002524049);
+}
+
+TEST_CASE("two mirrors of gold whose planes are turned make light elliptic") {
+    const auto gold = [](SceneBuilder& s) { return s.surface({{"class", "conductor"}, {"eta", 0.183}, {"k", 3.43}}); };
+    const SceneBuilder s = two_mirrors(gold, dvec3(1, 0, 1) * std::sqrt(0.5));
+    check_stokes(stokes(s), {0.888266, 0.017597, 0.016222, -0.006811});
+}
