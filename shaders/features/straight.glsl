@@ -34,26 +34,32 @@ const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0 && HAS_POL
     (straight ? origin_behind(path.origin, p.position, p.error, p.geometric_normal, direction)                 \
               : offset_origin(p.position, p.error, p.geometric_normal, direction))
 
-// What of the ray's contribution reaches its end.
+// What of the ray's contribution reaches its end. Each surface puts the ray a little beside its way, by the error bound along the
+// normal: it is aimed at its end again, or a light that it meets at a grazing angle would hide itself.
 Spectrum follow_shadow_ray(ShadowRay shadow) {
     float t_left = shadow.t_max;
+    vec3 direction = shadow.direction;
     while (true) {
-        Hit hit = find_hit(shadow.origin, shadow.direction, t_left);
+        Hit hit = find_hit(shadow.origin, direction, t_left);
         bool met = hit.primitive != NO_RECORD;
         pass_medium(shadow, met ? hit.t : t_left);
         if (!met) return analysed(shadow, weighed(shadow));
-        SurfacePoint p = locate(hit, shadow.origin, shadow.direction);
-        Crossing sides = meet_faces(shadow.origin, shadow.direction, shadow.around, hit, p);
+        SurfacePoint p = locate(hit, shadow.origin, direction);
+        Crossing sides = meet_faces(shadow.origin, direction, shadow.around, hit, p);
         if (is_there(sides)) {
             if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
-            ScatteringPoint s = scattering_point(p, shadow.direction, sides);
+            ScatteringPoint s = scattering_point(p, direction, sides);
             shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
             polarize_passage(shadow, s);
             if (is_black(shadow.contribution)) return Spectrum(0);
         }
-        vec3 origin = origin_behind(shadow.origin, p.position, p.error, p.geometric_normal, shadow.direction);
-        t_left = t_left < INFINITY ? t_left - dot(origin - shadow.origin, shadow.direction) : INFINITY;
-        if (!(t_left > 0.0)) return analysed(shadow, weighed(shadow));
+        vec3 origin = origin_behind(shadow.origin, p.position, p.error, p.geometric_normal, direction);
+        if (t_left < INFINITY) {
+            vec3 left = shadow.origin + t_left * direction - origin;
+            t_left = dot(left, direction);
+            if (!(t_left > 0.0)) return analysed(shadow, weighed(shadow));
+            direction = normalize(left);
+        }
         shadow.origin = origin;
         shadow.around = surroundings_towards(sides, p, shadow.direction);
         if (bends_rays(shadow.around.medium)) return Spectrum(0);
