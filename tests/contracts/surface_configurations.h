@@ -144,6 +144,19 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
                {"k", steel_k},
                {"alpha", 0.2}}}};
     }
+    if (name == "linear_polarizer")
+        return {C{"ideal", nlohmann::json::object(), 1, 1, 0.5},
+                C{"real, turned", {{"axis", 0.7}, {"parallel", {0.8, 0.85, 0.7}}, {"crossed", 0.01}}},
+                C{"along its axis", {{"axis", -2}, {"kind", "transmitting"}, {"crossed", 0.1}}, 1, 1, 0.55}};
+    if (name == "reflective_polarizer")
+        return {C{"ideal", nlohmann::json::object(), 1, 1, 1.0},
+                C{"real, turned", {{"axis", 0.7}, {"pass", {0.8, 0.85, 0.7}}, {"block", 0.9}}}};
+    if (name == "retarder")
+        return {C{"quarter wave", {{"axis", 0.3}, {"retardance", 1.5707963}}, 1, 1, 1.0},
+                C{"quartz", {{"axis", 0.3}}, 1, 1, 1.0},
+                C{"calcite", {{"ior_ordinary", 1.6584}, {"ior_extraordinary", 1.4864}, {"thickness", 1300}}, 1, 1, 1.0}};
+    if (name == "depolarizer") return {C{"depolarizer", nlohmann::json::object(), 1, 1, 1.0}};
+    if (name == "color_filter") return {C{"red", {{"transmittance", {0.9, 0.2, 0.05}}}}};
     if (name == "measured") return measured_files();
     if (name == "absorber") return {C{"absorber", nlohmann::json::object(), 1, 1, 0.0}};
     if (name == "boundary") return {C{"boundary", nlohmann::json::object(), 1.33f, 1, 1.0}};

@@ -13,6 +13,7 @@ namespace etendue {
 namespace {
 
 constexpr uint32_t max_count = 1 << 17;  // samples or pairs of one dispatch
+constexpr uint32_t max_queries = 1 << 12;
 
 Kernel probe_kernel(ShaderSources sources, const std::string& name, const BufferTable& buffers) {
     sources.generated[name] = test_kernel_text(name);
@@ -74,16 +75,21 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     pairs_ = Buffer(device, max_count * sizeof(DirectionPair), "direction pairs");
     values_ = Buffer(device, max_count * sizeof(SurfaceValue), "surface values");
     const std::string block = std::string(interface_info(Interface::surface).buffer) + "__" + class_name;
+    queries_ = Buffer(device, max_queries * sizeof(MuellerQuery), "Mueller queries");
+    muellers_ = Buffer(device, max_queries * sizeof(MuellerAnswer), "Mueller matrices");
     BufferTable table{{block, &records_},
                       {interface_info(Interface::surface).buffer, &records_},
                       {"Samples", &samples_},
                       {"Answers", &answers_},
                       {"Pairs", &pairs_},
                       {"Values", &values_},
+                      {"Queries", &queries_},
+                      {"Muellers", &muellers_},
                       {"MeasuredPoints", &measured_points_},
                       {"MeasuredColors", &measured_colors_}};
     sample_ = probe_kernel(sources, "sample_surface.comp", table);
     evaluate_ = probe_kernel(sources, "evaluate_surface.comp", table);
+    polarize_ = probe_kernel(sources, "polarize_surface.comp", table);
 }
 
 SurfaceSamples SurfaceProbe::sample(size_t record, const SurfaceSurroundings& at, glm::vec3 wo,
@@ -133,6 +139,25 @@ std::vector<SurfaceValue> SurfaceProbe::evaluate(size_t record, const SurfaceSur
         pairs = pairs.subspan(part.size());
     }
     return result;
+}
+
+std::vector<MuellerAnswer> SurfaceProbe::polarize(size_t record, const SurfaceSurroundings& at,
+                                                  std::span<const MuellerQuery> queries) {
+    REQUIRE(queries.size() <= max_queries);
+    queries_.write(queries.data(), queries.size_bytes());
+    CommandList list(test_device());
+    list.dispatch(polarize_, groups(queries.size()),
+                  {{"count", uint32_t(queries.size())},
+                   {"surface", refs_.at(record)},
+                   {"ior_above", at.ior_above},
+                   {"ior_below", at.ior_below},
+                   {"importance", uint32_t(at.importance)},
+                   {"color_r", at.color.x},
+                   {"color_g", at.color.y},
+                   {"color_b", at.color.z},
+                   {"color_a", at.color.w}});
+    list.run();
+    return muellers_.read_array<MuellerAnswer>(queries.size());
 }
 
 }  // namespace etendue

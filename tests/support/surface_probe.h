@@ -1,6 +1,7 @@
 // Surfaces of one registered class on the device, asked through the interface of
 // shaders/interfaces/surface_optics.glsl.
 #pragma once
+#include <array>
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 #include <span>
@@ -41,6 +42,18 @@ struct SurfaceValue {
     float pdf, pdf_reverse;
 };
 
+// Light comes from `from` and goes to `to`; event 0 is one of `evaluate`.
+struct MuellerQuery {
+    glm::vec3 from, to;
+    uint32_t event;
+};
+
+// As Mueller of shaders/lib/stokes.glsl.
+struct MuellerAnswer {
+    glm::vec3 from, to;
+    std::array<glm::vec3, 16> m;
+};
+
 class SurfaceProbe {
   public:
     // One record for each of `parameters`. A texture parameter is {"value": [r, g, b, a]}: the same
@@ -51,11 +64,13 @@ class SurfaceProbe {
                           uint32_t seed);
     std::vector<SurfaceValue> evaluate(size_t record, const SurfaceSurroundings& at,
                                        std::span<const DirectionPair> pairs);
+    std::vector<MuellerAnswer> polarize(size_t record, const SurfaceSurroundings& at,
+                                        std::span<const MuellerQuery> queries);
 
   private:
-    Buffer records_, samples_, answers_, pairs_, values_, measured_points_, measured_colors_;
+    Buffer records_, samples_, answers_, pairs_, values_, measured_points_, measured_colors_, queries_, muellers_;
     std::vector<uint32_t> refs_;
-    Kernel sample_, evaluate_;
+    Kernel sample_, evaluate_, polarize_;
 };
 
 // The text of a file under tests/kernels/.
