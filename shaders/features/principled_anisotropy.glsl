@@ -1,5 +1,6 @@
 // Facets of the class `principled` that are wider one way than across it. Widths of GGX are one number where no material of the
 // scene has such.
+#include "lib/accurate_math.glsl"
 #include "lib/microfacet_anisotropic.glsl"
 
 #ifndef ABSENT_principled_anisotropy
@@ -12,7 +13,7 @@ void resolve_anisotropy(inout Principled r, SurfaceContext c) {
     if (r.anisotropy_texture.index == NO_RECORD) return;
     vec3 t = texture_value(r.anisotropy_texture, c.uv0, c.uv1).xyz;
     r.anisotropy *= t.z;
-    r.anisotropy_rotation += atan(2.0 * t.y - 1.0, 2.0 * t.x - 1.0);
+    r.anisotropy_rotation += accurate_atan2(2.0 * t.y - 1.0, 2.0 * t.x - 1.0);
 }
 
 // The widest is the first, along the axis, which lies in the local xy plane.
@@ -22,7 +23,7 @@ PrincipledWidth principled_widths(Principled r, float width, out vec2 axis) {
         alpha.y = max(width, SMOOTH_ALPHA);
         alpha.x = mix(alpha.y, 1.0, square(min(r.anisotropy, 1.0)));
     }
-    axis = vec2(cos(r.anisotropy_rotation), sin(r.anisotropy_rotation));
+    axis = cos_sin_turns(r.anisotropy_rotation * (0.5 * INV_PI));
     return alpha;
 }
 

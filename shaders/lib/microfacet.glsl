@@ -5,6 +5,8 @@
 // form of glTF's appendix B. Directions are local with wo.z >= 0: callers mirror z where the path comes from
 // below. All quotients are arranged so that wo.z = 0 and wi.z = 0 give finite values.
 
+#include "lib/accurate_math.glsl"
+
 // Narrower lobes than this are treated as perfectly smooth: float directions cannot resolve them.
 const float SMOOTH_ALPHA = 1e-4;
 
@@ -32,8 +34,7 @@ vec3 ggx_sample_visible(vec3 wo, float alpha, vec2 u) {
     vec3 w = normalize(vec3(wo.xy * alpha, wo.z));
     float drop = u.x * (1.0 + w.z);  // 1 - z of the point on the cap
     float r = sqrt(max(0.0, drop * (2.0 - drop)));
-    float phi = 2.0 * PI * u.y;
-    vec3 h = vec3(r * cos(phi) + w.x, r * sin(phi) + w.y, (1.0 - u.x) * (1.0 + w.z));
+    vec3 h = vec3(r * cos_sin_turns(u.y) + w.xy, (1.0 - u.x) * (1.0 + w.z));
     return normalize(vec3(h.xy * alpha, max(h.z, 1e-10)));
 }
 

@@ -165,6 +165,46 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     return result;
 }
 
+// Facets and coat polarize by Fresnel's equations about the half vector, metals as mirrors that keep s and p alike (a colour says no
+// more of them); what the body and the sheen scatter is depolarized. Films and thin walls are taken as single faces.
+Mueller principled_mueller(Principled r, SurfaceContext c, vec3 from, vec3 to, uint event) {
+    if ((event & EVENT_STRAIGHT) != 0u) return passing(to);
+    float side = from.z < 0.0 ? -1.0 : 1.0;
+    from.z *= side, to.z *= side;
+    PrincipledMaterial m = principled_material(r, c);
+    principled_face(m, c, side);
+    vec3 o = principled_turned(m, from), i = principled_turned(m, to);
+    bool reflects = i.z > 0.0, is_delta = (event & EVENT_DELTA) != 0u;
+    vec3 mirrored = m.thin ? vec3(i.xy, abs(i.z)) : i;
+    vec3 h = vec3(0, 0, 1);
+    if (reflects || m.thin) h = reflection_normal(o, mirrored);
+    else if (!is_delta) h = refraction_normal(o, i, m.eta);
+    float cosine = dot(o, h);
+    Mueller result = fresnel_dielectric_mueller(facet_axis(mirrored, h), cosine, m.eta == 1.0 ? 1.5 : m.eta, reflects);
+    if (reflects && m.metal > 0.0) {
+        Spectrum reflected, transmitted;
+        principled_facet(m, cosine, reflected, transmitted);
+        Spectrum metal = m.metal * mix(m.color, Spectrum(1), schlick_weight(cosine)) / max(reflected, Spectrum(1e-30));
+        Mueller mirror = phase_plate(result.from, Spectrum(0), Spectrum(-1), Spectrum(0));
+        for (int k = 1; k < 16; ++k) result.m[k] = mix(result.m[k], mirror.m[k], clamp(metal, Spectrum(0), Spectrum(1)));
+    }
+    if (!is_delta) {
+        Spectrum all = Spectrum(0), facets = Spectrum(0);
+        float pdf;
+        for (uint k = 0u; k < 2u; ++k) {  // a loop, so that the code of all lobes stands once
+            Spectrum value = principled_scattering(m, o, i, pdf);
+            if (k == 0u) all = value;
+            else facets = value;
+            m.diffuse_reflected = m.diffuse_transmitted = m.sheen = Spectrum(0);
+        }
+        result = partly(result, clamp(facets / max(all, Spectrum(1e-30)), Spectrum(0), Spectrum(1)));
+    }
+    vec3 turn = vec3(1, 1, side);
+    result.from = principled_turned_back(m, result.from) * turn;
+    result.to = principled_turned_back(m, result.to) * (i.z < 0.0 && m.thin ? vec3(1, 1, -1) * turn : turn);
+    return result;
+}
+
 Spectrum principled_transparency(Principled r, SurfaceContext c, vec3 wo) {
     PrincipledMaterial m = principled_material(r, c);
     principled_face(m, c, wo.z < 0.0 ? -1.0 : 1.0);
