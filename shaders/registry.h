@@ -43,7 +43,9 @@
     X(12, ReflectivePolarizer, reflective_polarizer) \
     X(13, Retarder, retarder)           \
     X(14, Depolarizer, depolarizer)     \
-    X(15, ColorFilter, color_filter)
+    X(15, ColorFilter, color_filter)    \
+    X(16, LcCell, lc_cell)              \
+    X(17, MuellerSheet, mueller)
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)              \

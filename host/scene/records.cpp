@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "host/error.h"
+#include "host/scene/mueller_matrix.h"
 
 namespace etendue {
 namespace {
@@ -91,6 +92,14 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
             if (!value.is_null() && !p.in_range(x))
                 fail_input("{}: {} is out of range; allowed:{}", place, x, allowed(p));
         store(record, at, SpectrumRef{spectrum.rgb, resolver.spectrum(spectrum, kind)});
+    } else if (type == "MuellerMatrix") {
+        if (!value.is_array() || value.size() != 16) fail_input("{}: allowed: an array of 16 numbers, row by row", place);
+        MuellerMatrix m;
+        for (size_t i = 0; i < 16; ++i) {
+            m[i] = checked_number(value[i], p, fmt::format("{}/{}", place, i));
+            store(record, at + 4 * uint32_t(i), float(m[i]));
+        }
+        if (const std::string flaw = flaw_of(m); !flaw.empty()) fail_input("{}: {}; allowed: a physical Mueller matrix", place, flaw);
     } else if (type == "TextureRef") {
         store(record, at, value.is_null() ? no_record : resolver.texture(value, p.unit != "data", where));
     } else if (type == "MediumRef") {

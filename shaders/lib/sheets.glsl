@@ -21,15 +21,18 @@ Mueller polarizer_mueller(vec3 axis, Spectrum along, Spectrum across) {
     return phase_plate(axis, (along - across) * inverse, 2.0 * sqrt(along * across) * inverse, Spectrum(0));
 }
 
+void cos_sin(Spectrum angle, out Spectrum cosine, out Spectrum sine) {
+    for (uint i = 0u; i < LANES; ++i) {
+        vec2 cs = cos_sin_turns(angle[i] * (0.5 * INV_PI));
+        cosine[i] = cs.x, sine[i] = cs.y;
+    }
+}
+
 // Light along the slow axis falls behind by `phase`.
 Mueller wave_plate_mueller(vec3 slow, Spectrum phase) {
-    Mueller m = phase_plate(slow, Spectrum(0), Spectrum(1), Spectrum(0));
-    for (uint i = 0u; i < LANES; ++i) {
-        vec2 cs = cos_sin_turns(phase[i] * (0.5 * INV_PI));
-        m.m[10][i] = m.m[15][i] = cs.x;
-        m.m[11][i] = -cs.y, m.m[14][i] = cs.y;
-    }
-    return m;
+    Spectrum cosine, sine;
+    cos_sin(phase, cosine, sine);
+    return phase_plate(slow, Spectrum(0), cosine, sine);
 }
 
 BsdfSample sheet_sample(vec3 wo, Spectrum transmittance) {

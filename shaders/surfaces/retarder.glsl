@@ -15,7 +15,7 @@ struct Retarder {
     SpectrumRef retardance;       //: none in [0, inf) rad. At every angle, instead of what follows. none = -1.
     SpectrumRef ior_ordinary;     //: 1.5443 in [0.1, 100] ior. For light polarized across the optic axis.
     SpectrumRef ior_extraordinary;  //: 1.5533 in [0.1, 100] ior. For light along it.
-    float thickness;              //: 16190 in [0, 1e9] nm.
+    float thickness;              //: 16190 in [0, 1e9] nm. Of the plate.
 };
 
 Retarder retarder_resolve(Retarder r, SurfaceContext c) { return r; }
