@@ -8,6 +8,8 @@
 #include <functional>
 #include <glm/gtc/quaternion.hpp>
 
+#include "host/gltf/gltf.h"
+#include "host/spectra/color.h"
 #include "tests/renders/agreement_scenes.h"
 #include "tests/renders/algorithm_comparison.h"
 #include "tests/support/source_path.h"
@@ -196,6 +198,36 @@ TEST_CASE("a circular polarizer before a mirror is black, before white paper it 
     paper.rectangle(0.01, 0.01, paper.surface({{"class", "depolarizer"}}), at(0, 0, -0.9));
     paper.rectangle(0.4, 0.4, paper.surface({{"class", "conductor"}}), at(0, 0, -1));
     check_seen(seen(paper), 0.25);
+}
+
+TEST_CASE("example polarizers: what one, two and three let through, and a quarter-wave plate") {
+    RenderPlan plan;
+    plan.width = 160, plan.height = 100, plan.seeds = 4;
+    const Estimates e = render_estimates(import_gltf(source_path("scenes/polarizers.gltf")), plan);
+    const auto at_place = [&](double x, double y) {
+        const auto column = uint32_t((x / 1.76 + 1) / 2 * 160), row = uint32_t((1 - y / 1.1) / 2 * 100);
+        return window_mean(e, {column - 2, row - 2, 5, 5}, 1).mean;
+    };
+    CHECK(at_place(-1.5, 0.8) == doctest::Approx(100).epsilon(2e-3));
+    CHECK(at_place(-1.2, 0) == doctest::Approx(50).epsilon(2e-3));
+    CHECK(at_place(0.1, 0) < 1e-3);
+    CHECK(at_place(-0.25, 0) == doctest::Approx(12.5).epsilon(5e-3));
+    CHECK(at_place(0.4, 0) == doctest::Approx(25).epsilon(0.03));
+}
+
+TEST_CASE("example retarders: Michel-Lévy's colours") {
+    RenderPlan plan;
+    plan.width = 180, plan.height = 90, plan.passes = 256, plan.seeds = 4;
+    const Estimates e = render_estimates(import_gltf(source_path("scenes/retarders.gltf")), plan);
+    for (int strip : {3, 10, 21}) {  // 200, 550, 1100 nm
+        const double g = 50.0 * (strip + 1), x = 0.1 * (strip - 15);
+        const glm::dvec3 expected =
+            rgb_of_radiance(white_light() * tabulate([&](double nm) { return 50 * std::pow(std::sin(pi * g / nm), 2); }));
+        const auto column = uint32_t((x / 1.8 + 1) / 2 * 180);
+        CAPTURE(g);
+        for (int k = 0; k < 3; ++k)
+            CHECK(window_mean(e, {column - 1, 40, 3, 10}, k).mean == doctest::Approx(expected[k]).epsilon(0.01).scale(40));
+    }
 }
 
 TEST_CASE("two mirrors of glass reflect by their planes") {

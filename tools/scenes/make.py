@@ -16,6 +16,7 @@ from furnaces import furnace_closed, furnace_rough, furnace_smooth, spheres
 from grin import grin
 from lights import lamps, many_lights
 from manual import write_showcases
+from polarization import polarizers, retarders
 from scattering import cloud, glass_in_fog
 from surfaces import films, finishes, materials
 from water import iced_water, pool
@@ -36,6 +37,8 @@ SCENES = [
     materials,
     finishes,
     films,
+    polarizers,
+    retarders,
     many_lights,
     furnace_smooth,
     furnace_rough,
