@@ -31,7 +31,8 @@ OpenedScene open_scene(const SceneChoice& choice) {
     const DeviceDescription& used = opened.device->description;
     if (used.max_loop_turns > 0)
         opened.scene.warnings.push_back(
-            fmt::format("{} ends loops after {} turns: long paths, and rays past many surfaces or vertices, may lack light",
+            fmt::format("{} ends loops after {} turns: long paths, and rays past many surfaces or vertices, "
+                        "may lack light",
                         used.driver, used.max_loop_turns));
     return opened;
 }

@@ -53,16 +53,17 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     passes->option_text("N")->excludes(seconds)->excludes(error);
     seconds->option_text("SEC")->excludes(error);
     error->option_text("E");
-    add_shared(*render, options, arguments.shared,
-               {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
-                {"receiver", "Camera to render (default: the scene's first)"},
-                {"environment", "Latitude-longitude image for the scene's surroundings"},
-                {"algorithm", "How light is traced (default: auto)"},
-                {"vertex-memory",
-                 "Memory for vertices of forward paths; a pass that needs more is split (default: 256)"},
-                {"color", "What a ray carries (default: auto)"},
-                {"polarization", "Whether rays carry polarization (default: auto, where something polarizes)"},
-                {"spectral-bins", "Also write the spectrum, in N equal bins from 360 to 830 nm"}});
+    add_shared(
+        *render, options, arguments.shared,
+        {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
+         {"receiver", "Camera to render (default: the scene's first)"},
+         {"environment", "Latitude-longitude image for the scene's surroundings"},
+         {"algorithm", "How light is traced (default: auto)"},
+         {"vertex-memory",
+          "Memory for vertices of forward paths; a pass that needs more is split (default: 256)"},
+         {"color", "What a ray carries (default: auto)"},
+         {"polarization", "Whether rays carry polarization (default: auto, where something polarizes)"},
+         {"spectral-bins", "Also write the spectrum, in N equal bins from 360 to 830 nm"}});
     add_shared(*render, options, arguments.shared,
                {{"schedule", "Whole paths in one kernel, or a kernel a stage (default: auto)"},
                 {"sampler", "Where random numbers come from (default: sobol)"},

@@ -15,8 +15,8 @@ namespace etendue {
 // Arguments as text (host/cli/values.h).
 struct SharedArguments {
     std::optional<std::string> size, spectral_bins;
-    std::string algorithm = "auto", vertex_memory = "256", color = "auto", polarization = "auto", schedule = "auto",
-                sampler = "sobol", seed = "0";
+    std::string algorithm = "auto", vertex_memory = "256", color = "auto", polarization = "auto",
+                schedule = "auto", sampler = "sobol", seed = "0";
 };
 
 struct SharedOption {

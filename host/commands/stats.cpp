@@ -83,6 +83,7 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
                            {"forward_paths_a_pixel", c.forward_paths ? choice.forward_paths : 0.0},
                            {"pilot_seconds", choice.pilot_seconds},
                            {"schedule", schedule_name(renderer.schedule())},
+                           {"polarization", scene.features.polarization},
                            {"kernels", timings},
                            {"compiled_kernels", kernels},
                            {"compile_seconds", compile_seconds},

@@ -26,10 +26,11 @@ struct DeviceDescription {
     // (host/gpu/texel_reads.h).
     uint64_t max_texels = 0;
     uint32_t max_texel_buffers = 0;
-    // Straight code of many choices compiles (host/geometry/unrolled_traversal.h): SwiftShader takes minutes and all memory.
+    // Straight code of many choices compiles (host/geometry/unrolled_traversal.h): SwiftShader takes minutes
+    // and all memory.
     bool compiles_choices = true;
-    uint64_t memory = 0;               // bytes of the largest device-local heap
-    uint32_t max_loop_turns = 0;       // host/gpu/loop_turns.h; 0 = no end. Known of a device that was created
+    uint64_t memory = 0;          // bytes of the largest device-local heap
+    uint32_t max_loop_turns = 0;  // host/gpu/loop_turns.h; 0 = no end. Known of a device that was created
     std::vector<std::string> missing;  // what étendue needs and the device lacks; empty = usable
 };
 

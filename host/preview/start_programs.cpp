@@ -18,10 +18,10 @@ uint64_t key_of(const ViewOptions& options) {
     uint64_t key = ShaderSources{}.whole_hash().value();
     for (const auto& path : {options.scene, options.environment, options.shaders})
         key = hash_text(path.empty() ? "" : std::filesystem::weakly_canonical(path, error).string(), key);
-    return hash_text(
-        fmt::format("{} {} {} {} {} {} {}", options.device, int(options.color), int(options.polarization), options.spectral_bins,
-                    int(options.samples), int(options.algorithm), int(options.schedule)),
-        key);
+    return hash_text(fmt::format("{} {} {} {} {} {} {}", options.device, int(options.color),
+                                 int(options.polarization), options.spectral_bins, int(options.samples),
+                                 int(options.algorithm), int(options.schedule)),
+                     key);
 }
 
 std::string read_text(const std::filesystem::path& path) {

@@ -76,7 +76,8 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
     }
     trace_forward_paths_ =
         make_kernel(device, scene, "kernels/trace_forward_paths.comp", table, techniques.forward_defines());
-    const bool refills = device.description.type == "CPU" && device.description.max_loop_turns == 0;  // as backward paths
+    const bool refills =
+        device.description.type == "CPU" && device.description.max_loop_turns == 0;  // as backward paths
     const uint32_t a_group = trace_forward_paths_.group_size() * (refills ? 8 : 1);
     groups_ = std::clamp((count_ + a_group - 1) / a_group, 1u, max_groups);
 }

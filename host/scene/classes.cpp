@@ -304,7 +304,8 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         if (known != constants.end()) text += known->second.macros;
         text += fmt::format("#include \"{}\"\n", info->file);
         if (interface.interface == Interface::surface && !info->says_polarization)
-            text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n", info->name);
+            text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n",
+                                info->name);
         if (interface.interface == Interface::phase && !info->says_polarization)
             text += fmt::format("#define {}_mueller(r, cosine) depolarizing()\n", info->name);
         // All classes of an interface are views of one buffer, on one binding.

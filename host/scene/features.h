@@ -6,7 +6,8 @@
 
 namespace etendue {
 
-constexpr uint32_t most_bodies = 16;  // materials with a priority: what shaders/features/bodies.glsl can count
+constexpr uint32_t most_bodies =
+    16;  // materials with a priority: what shaders/features/bodies.glsl can count
 
 struct Features {
     bool triangles = false;           // the world hierarchy holds triangles

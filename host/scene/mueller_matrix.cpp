@@ -10,7 +10,8 @@ using Complex = std::complex<double>;
 constexpr double tolerance = 1e-6;  // of the first element: numbers in files are rounded
 
 constexpr Complex one = 1, i = {0, 1};
-const Complex pauli[4][2][2] = {{{one, 0}, {0, one}}, {{one, 0}, {0, -one}}, {{0, one}, {one, 0}}, {{0, -i}, {i, 0}}};
+const Complex pauli[4][2][2] = {
+    {{one, 0}, {0, one}}, {{one, 0}, {0, -one}}, {{0, one}, {one, 0}}, {{0, -i}, {i, 0}}};
 
 // Has a Hermitian matrix no negative eigenvalue? By Cholesky's decomposition.
 bool is_positive(std::array<std::array<Complex, 4>, 4> h) {
@@ -38,7 +39,8 @@ std::string flaw_of(const MuellerMatrix& m) {
         for (int c = 0; c < 4; ++c)
             for (int a = 0; a < 4; ++a)
                 for (int b = 0; b < 4; ++b)
-                    h[r][c] += 0.25 * m[4 * a + b] * pauli[a][r / 2][c / 2] * std::conj(pauli[b][r % 2][c % 2]);
+                    h[r][c] +=
+                        0.25 * m[4 * a + b] * pauli[a][r / 2][c / 2] * std::conj(pauli[b][r % 2][c % 2]);
     for (int k = 0; k < 4; ++k) h[k][k] += tolerance * m[0];
     return is_positive(h) ? "" : "it makes more polarization than there is light";
 }

@@ -54,8 +54,10 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
     const uint32_t at = p.member.offset;
     const std::string place = message_place(resolver.scene, where);
     if (!p.choices.empty()) {
-        const auto chosen = std::find(p.choices.begin(), p.choices.end(), value.is_string() ? value.get<std::string>() : "");
-        if (chosen == p.choices.end()) fail_input("{}: {} is not allowed; allowed: {}", place, value.dump(), p.range());
+        const auto chosen =
+            std::find(p.choices.begin(), p.choices.end(), value.is_string() ? value.get<std::string>() : "");
+        if (chosen == p.choices.end())
+            fail_input("{}: {} is not allowed; allowed: {}", place, value.dump(), p.range());
         store(record, at, uint32_t(chosen - p.choices.begin()));
     } else if (type == "float") {
         store(record, at, checked_number(value, p, place));
@@ -93,13 +95,15 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
                 fail_input("{}: {} is out of range; allowed:{}", place, x, allowed(p));
         store(record, at, SpectrumRef{spectrum.rgb, resolver.spectrum(spectrum, kind)});
     } else if (type == "MuellerMatrix") {
-        if (!value.is_array() || value.size() != 16) fail_input("{}: allowed: an array of 16 numbers, row by row", place);
+        if (!value.is_array() || value.size() != 16)
+            fail_input("{}: allowed: an array of 16 numbers, row by row", place);
         MuellerMatrix m;
         for (size_t i = 0; i < 16; ++i) {
             m[i] = checked_number(value[i], p, fmt::format("{}/{}", place, i));
             store(record, at + 4 * uint32_t(i), float(m[i]));
         }
-        if (const std::string flaw = flaw_of(m); !flaw.empty()) fail_input("{}: {}; allowed: a physical Mueller matrix", place, flaw);
+        if (const std::string flaw = flaw_of(m); !flaw.empty())
+            fail_input("{}: {}; allowed: a physical Mueller matrix", place, flaw);
     } else if (type == "TextureRef") {
         store(record, at, value.is_null() ? no_record : resolver.texture(value, p.unit != "data", where));
     } else if (type == "MediumRef") {

@@ -1,5 +1,6 @@
-// What surfaces do to polarization: reference values in double precision, and for every registered class that no light comes out with
-// more polarization than there is light, and that the way back is that of reciprocity.
+// What surfaces do to polarization: reference values in double precision, and for every registered class that
+// no light comes out with more polarization than there is light, and that the way back is that of
+// reciprocity.
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -92,22 +93,29 @@ TEST_CASE("glass polarizes what it reflects and refracts by Fresnel") {
     check_reflectances(reflected(75, air), 0.399356027, 0.106765099, 0);
     check_reflectances(reflected(56.309932, air), 0.147928994, 0, 0);
     // Total reflection.
-    for (const auto& [angle, phase] : {std::pair{45.0, 36.869898}, {60.0, 40.459083}, {51.671190, 45.239730}, {50.229432, 45.0}})
+    for (const auto& [angle, phase] :
+         {std::pair{45.0, 36.869898}, {60.0, 40.459083}, {51.671190, 45.239730}, {50.229432, 45.0}})
         check_block(reflected(angle, glass), 0, std::cos(phase * degree), std::sin(phase * degree));
     // Refraction: T_s : T_p, no phase.
     for (double angle : {0.01, 30.0, 60.0, 85.0}) {
-        const double c = std::cos(angle * degree), t = std::sqrt(1 - std::pow(std::sin(angle * degree) / 1.5, 2));
+        const double c = std::cos(angle * degree),
+                     t = std::sqrt(1 - std::pow(std::sin(angle * degree) / 1.5, 2));
         const double s = 2 * c / (c + 1.5 * t), p = 2 * c / (1.5 * c + t), sum = s * s + p * p;
-        const MuellerQuery in{direction(angle * degree, 0.7), direction(std::acos(-t), 0.7 + pi), event_transmit | event_delta};
+        const MuellerQuery in{direction(angle * degree, 0.7), direction(std::acos(-t), 0.7 + pi),
+                              event_transmit | event_delta};
         const MuellerQuery out{in.to, in.from, in.event};
-        check_block(in_plane(in, probe.polarize(0, air, {{in}})[0]), (s * s - p * p) / sum, 2 * s * p / sum, 0);
-        check_block(in_plane(out, probe.polarize(0, air, {{out}})[0]), (s * s - p * p) / sum, 2 * s * p / sum, 0);
+        check_block(in_plane(in, probe.polarize(0, air, {{in}})[0]), (s * s - p * p) / sum, 2 * s * p / sum,
+                    0);
+        check_block(in_plane(out, probe.polarize(0, air, {{out}})[0]), (s * s - p * p) / sum, 2 * s * p / sum,
+                    0);
     }
 }
 
 TEST_CASE("metals turn what they reflect elliptic") {
     ClassRegistry classes = registry();
-    SurfaceProbe probe(classes, "conductor", {{{"eta", 0.183}, {"k", 3.43}}, {{"eta", 1.37}, {"k", 7.62}}, {{"eta", 1.5}, {"k", 1e-4}}});
+    SurfaceProbe probe(
+        classes, "conductor",
+        {{{"eta", 0.183}, {"k", 3.43}}, {{"eta", 1.37}, {"k", 7.62}}, {{"eta", 1.5}, {"k", 1e-4}}});
     const auto reflected = [&](size_t metal, double angle) {
         const MuellerQuery q = reflection(angle * degree);
         return in_plane(q, probe.polarize(metal, {}, {{q}})[0]);
@@ -119,7 +127,8 @@ TEST_CASE("metals turn what they reflect elliptic") {
     CHECK(reflected(0, 74.8585)[2][2] == doctest::Approx(0).scale(1).epsilon(1e-5));  // the principal angle
     // What hardly absorbs is glass.
     const dmat4 glass = reflected(2, 30);
-    CHECK(glass[2][2] == doctest::Approx(-2 * std::sqrt(0.057796105 * 0.025249147) / 0.083045252).epsilon(1e-3));
+    CHECK(glass[2][2] ==
+          doctest::Approx(-2 * std::sqrt(0.057796105 * 0.025249147) / 0.083045252).epsilon(1e-3));
 }
 
 TEST_CASE("a pane adds its echoes, s and p apart") {
@@ -127,30 +136,37 @@ TEST_CASE("a pane adds its echoes, s and p apart") {
     SurfaceProbe probe(classes, "thin_dielectric", {nlohmann::json::object()});
     const MuellerQuery reflects = reflection(60 * degree);
     const MuellerQuery passes{reflects.from, -reflects.from, event_transmit | event_delta | event_straight};
-    CHECK(in_plane(reflects, probe.polarize(0, {}, {{reflects}})[0])[1][0] == doctest::Approx(0.148274198 / 0.151871590).epsilon(1e-5));
-    CHECK(in_plane(passes, probe.polarize(0, {}, {{passes}})[0])[1][0] == doctest::Approx(-0.148274198 / 0.848128410).epsilon(1e-5));
+    CHECK(in_plane(reflects, probe.polarize(0, {}, {{reflects}})[0])[1][0] ==
+          doctest::Approx(0.148274198 / 0.151871590).epsilon(1e-5));
+    CHECK(in_plane(passes, probe.polarize(0, {}, {{passes}})[0])[1][0] ==
+          doctest::Approx(-0.148274198 / 0.848128410).epsilon(1e-5));
 }
 
 TEST_CASE("a twisted nematic cell between polarizers along its directors") {
     ClassRegistry classes = registry();
-    SurfaceProbe cell(classes, "lc_cell", {nlohmann::json::object()}), sheets(classes, "linear_polarizer", {{{"axis", 0}}, {{"axis", pi / 2}}});
-    // Part of the light that the first polarizer lets through and the cell turns, so that crossed ones do: of the three wavelengths.
+    SurfaceProbe cell(classes, "lc_cell", {nlohmann::json::object()}),
+        sheets(classes, "linear_polarizer", {{{"axis", 0}}, {{"axis", pi / 2}}});
+    // Part of the light that the first polarizer lets through and the cell turns, so that crossed ones do: of
+    // the three wavelengths.
     const auto crossed = [&](const SurfaceSurroundings& at, const glm::vec3& to, int lane) {
         const MuellerQuery q{-to, to, event_transmit | event_delta | event_straight};
-        const MuellerAnswer c = cell.polarize(0, at, {{q}})[0], a = sheets.polarize(0, at, {{q}})[0], b = sheets.polarize(1, at, {{q}})[0];
+        const MuellerAnswer c = cell.polarize(0, at, {{q}})[0], a = sheets.polarize(0, at, {{q}})[0],
+                            b = sheets.polarize(1, at, {{q}})[0];
         const dvec3 d = to;
-        const dmat4 whole = matrix(b, lane) * rotator(c.to, b.from, d) * matrix(c, lane) * rotator(a.to, c.from, d) * matrix(a, lane);
+        const dmat4 whole = matrix(b, lane) * rotator(c.to, b.from, d) * matrix(c, lane) *
+                            rotator(a.to, c.from, d) * matrix(a, lane);
         return 0.5 * whole[0][0];  // both sheets in units of the 1/2 that they let through
     };
-    // Gooch & Tarry 1975: sin²(pi/2 sqrt(1 + u²)) / (1 + u²), u = 2 d dn / lambda; the director on the side of the normal lies along x,
-    // and light comes from there.
+    // Gooch & Tarry 1975: sin²(pi/2 sqrt(1 + u²)) / (1 + u²), u = 2 d dn / lambda; the director on the side
+    // of the normal lies along x, and light comes from there.
     const double nm[] = {611, 549, 464};
     for (int lane = 0; lane < 3; ++lane) {
         const double u = 2 * 4330 * 0.1 / nm[lane], v = std::sqrt(1 + u * u);
         CHECK(crossed({1.55f, 1.55f}, {0, 0, -1}, lane) ==
               doctest::Approx(1 - std::pow(std::sin(pi / 2 * v) / v, 2)).epsilon(1e-4));
     }
-    // Oblique: Berreman's 4 x 4 matrices in glass of index 1.55, 30 degrees in air; between 450, 550 and 650 nm.
+    // Oblique: Berreman's 4 x 4 matrices in glass of index 1.55, 30 degrees in air; between 450, 550 and 650
+    // nm.
     const double sine = 0.5 / 1.55, expected[] = {0.982989, 0.922720, 0.982989, 0.997054};
     for (int i = 0; i < 4; ++i) {
         const double azimuth = 45 * degree * i;
@@ -171,7 +187,8 @@ TEST_CASE("no surface makes more polarization than there is light, and light goe
         SurfaceProbe probe(classes, info.name, parameters);
         for (size_t record = 0; record < parameters.size(); ++record)
             for (const bool importance : {false, true}) {
-                const SurfaceSurroundings at{configurations[record].ior_above, configurations[record].ior_below, importance};
+                const SurfaceSurroundings at{configurations[record].ior_above,
+                                             configurations[record].ior_below, importance};
                 std::vector<MuellerQuery> there, back;
                 for (int i = 0; i < 12; ++i) {
                     const glm::vec3 wo = direction(std::acos(2 * random() - 1), 2 * pi * random());
@@ -183,7 +200,8 @@ TEST_CASE("no surface makes more polarization than there is light, and light goe
                     }
                 }
                 if (there.empty()) continue;
-                const auto forth = probe.polarize(record, at, there), reversed = probe.polarize(record, at, back);
+                const auto forth = probe.polarize(record, at, there),
+                           reversed = probe.polarize(record, at, back);
                 double most = 0;
                 size_t irreversible = 0;
                 for (size_t i = 0; i < there.size(); ++i)
@@ -199,15 +217,18 @@ TEST_CASE("no surface makes more polarization than there is light, and light goe
                         dmat4 flip(1);
                         flip[2][2] = -1;
                         const dmat4 expected = flip * glm::transpose(m) * flip;
-                        const dmat4 found = rotator(reversed[i].to, forth[i].from, from) * matrix(reversed[i], lane) *
+                        const dmat4 found = rotator(reversed[i].to, forth[i].from, from) *
+                                            matrix(reversed[i], lane) *
                                             rotator(forth[i].to, reversed[i].from, -to);
                         double apart = 0;
-                        for (int k = 0; k < 4; ++k) apart = std::max(apart, glm::length(expected[k] - found[k]));
+                        for (int k = 0; k < 4; ++k)
+                            apart = std::max(apart, glm::length(expected[k] - found[k]));
                         irreversible += apart > 2e-3;
                     }
                 INFO(info.name, " ", configurations[record].label, importance ? ", power" : ", radiance");
                 CHECK(most < 1e-4);
-                // Near the critical angle of a facet single precision does not tell on which side of it light is.
+                // Near the critical angle of a facet single precision does not tell on which side of it light
+                // is.
                 CHECK(50 * irreversible <= 3 * there.size());
             }
     }

@@ -154,14 +154,23 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
     if (name == "retarder")
         return {C{"quarter wave", {{"axis", 0.3}, {"retardance", 1.5707963}}, 1, 1, 1.0},
                 C{"quartz", {{"axis", 0.3}}, 1, 1, 1.0},
-                C{"calcite", {{"ior_ordinary", 1.6584}, {"ior_extraordinary", 1.4864}, {"thickness", 1300}}, 1, 1, 1.0}};
+                C{"calcite",
+                  {{"ior_ordinary", 1.6584}, {"ior_extraordinary", 1.4864}, {"thickness", 1300}},
+                  1,
+                  1,
+                  1.0}};
     if (name == "depolarizer") return {C{"depolarizer", nlohmann::json::object(), 1, 1, 1.0}};
     if (name == "lc_cell")
         return {C{"twisted", nlohmann::json::object(), 1, 1, 1.0},
-                C{"driven, in glass", {{"rubbing", 0.4}, {"twist", -1.2}, {"pretilt", 0.05}, {"drive", 0.6}}, 1.5f, 1.5f, 1.0}};
+                C{"driven, in glass",
+                  {{"rubbing", 0.4}, {"twist", -1.2}, {"pretilt", 0.05}, {"drive", 0.6}},
+                  1.5f,
+                  1.5f,
+                  1.0}};
     if (name == "mueller") {
         const nlohmann::json circular = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
-        const nlohmann::json diagonal = {0.4, 0.1, 0.2, 0, 0.05, 0.2, 0, 0.1, 0.1, 0, 0.2, 0, 0, 0.05, 0, 0.2};
+        const nlohmann::json diagonal = {0.4, 0.1, 0.2, 0, 0.05, 0.2,  0, 0.1,
+                                         0.1, 0,   0.2, 0, 0,    0.05, 0, 0.2};
         return {C{"some matrix", {{"matrix", diagonal}}, 1, 1, 0.4},
                 C{"right circular polarizer", {{"matrix", circular}}, 1, 1, 0.5},
                 C{"mirror of it", {{"matrix", circular}, {"axis", 0.4}, {"reflects", true}}, 1, 1, 0.5}};

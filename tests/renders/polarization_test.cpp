@@ -1,7 +1,8 @@
-// Polarized light seen through sheets and by mirrors, against closed forms; and all algorithms against each other.
+// Polarized light seen through sheets and by mirrors, against closed forms; and all algorithms against each
+// other.
 //
-// A camera of a narrow field looks along -z at a white environment, through sheets across its way. What a polarizer, with or without
-// a wave plate behind it, lets through tells the Stokes vector that comes to it.
+// A camera of a narrow field looks along -z at a white environment, through sheets across its way. What a
+// polarizer, with or without a wave plate behind it, lets through tells the Stokes vector that comes to it.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -43,7 +44,8 @@ void add_sheets(SceneBuilder& s, const std::vector<json>& sheets, const dvec3& n
 }
 
 // Russian roulette makes noise where little is left.
-WindowMean seen(const SceneBuilder& s, PolarizationMode mode = PolarizationMode::automatic, uint32_t pixels = 32) {
+WindowMean seen(const SceneBuilder& s, PolarizationMode mode = PolarizationMode::automatic,
+                uint32_t pixels = 32) {
     SceneOptions options;
     options.shaders = source_path("shaders");
     options.cache_folder = default_cache_folder();
@@ -90,8 +92,8 @@ std::array<WindowMean, 4> stokes(const SceneBuilder& scene) {
     const auto sum = [](const WindowMean& a, const WindowMean& b, double sign) {
         return WindowMean{a.mean + sign * b.mean, std::hypot(a.standard_error, b.standard_error)};
     };
-    return {sum(linear(0), linear(pi / 2), 1), sum(linear(0), linear(pi / 2), -1), sum(linear(pi / 4), linear(-pi / 4), -1),
-            sum(circular(-pi / 4), circular(pi / 4), -1)};
+    return {sum(linear(0), linear(pi / 2), 1), sum(linear(0), linear(pi / 2), -1),
+            sum(linear(pi / 4), linear(-pi / 4), -1), sum(circular(-pi / 4), circular(pi / 4), -1)};
 }
 
 void check_stokes(const std::array<WindowMean, 4>& found, const dvec4& expected) {
@@ -106,12 +108,14 @@ void check_stokes(const std::array<WindowMean, 4>& found, const dvec4& expected)
 
 // Absorbs at once whatever it refracts.
 int glass_mirror(SceneBuilder& s) {
-    if (!s.optics().contains("media")) s.medium("ink", {{"class", "homogeneous"}, {"ior", 1.5}, {"absorption", 1e7}});
+    if (!s.optics().contains("media"))
+        s.medium("ink", {{"class", "homogeneous"}, {"ior", 1.5}, {"absorption", 1e7}});
     return s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "ink"}});
 }
 
 // The camera sees a mirror that reflects its view from -z to +y, and another that does from there to `out`.
-SceneBuilder two_mirrors(const std::function<int(SceneBuilder&)>& mirror, const dvec3& out, double incidence = 45 * degree) {
+SceneBuilder two_mirrors(const std::function<int(SceneBuilder&)>& mirror, const dvec3& out,
+                         double incidence = 45 * degree) {
     SceneBuilder s = white();
     const double turn = pi - 2 * incidence;  // of the view
     const dvec3 in(0, 0, -1), between(0, std::sin(turn), -std::cos(turn));
@@ -155,8 +159,10 @@ TEST_CASE("crossed polarizers leak at an angle") {
 
 TEST_CASE("wave plates between polarizers") {
     for (double g : {0.5, pi / 2, 2.0, pi, 5.0}) {
-        check_seen(through({polarizer(0), wave_plate(pi / 4, g), polarizer(pi / 2)}), 0.5 * std::pow(std::sin(g / 2), 2));
-        check_seen(through({polarizer(0), wave_plate(pi / 4, g), polarizer(0)}), 0.5 * std::pow(std::cos(g / 2), 2));
+        check_seen(through({polarizer(0), wave_plate(pi / 4, g), polarizer(pi / 2)}),
+                   0.5 * std::pow(std::sin(g / 2), 2));
+        check_seen(through({polarizer(0), wave_plate(pi / 4, g), polarizer(0)}),
+                   0.5 * std::pow(std::cos(g / 2), 2));
     }
     // One seen from behind undoes the other: its axis is mirrored, slow becomes fast.
     SceneBuilder s = white();
@@ -166,16 +172,21 @@ TEST_CASE("wave plates between polarizers") {
     check_seen(seen(s), 0.5);
     // A plate of quartz by its thickness; at 30 degrees in the plane of the axis and across it.
     const auto quartz = [](double thickness) {
-        return json{{"class", "retarder"}, {"ior_ordinary", 1.5443}, {"ior_extraordinary", 1.5534}, {"thickness", thickness}};
+        return json{{"class", "retarder"},
+                    {"ior_ordinary", 1.5443},
+                    {"ior_extraordinary", 1.5534},
+                    {"thickness", thickness}};
     };
     const double nm = 611, g0 = 2 * pi / nm * 16190 * (1.5534 - 1.5443);  // of the channel red
     for (const auto& [azimuth, ratio] : {std::pair{0.0, 0.94612}, {90.0, 1.0566}}) {
         SceneBuilder tilted = white();
-        const dvec3 n(std::sin(30 * degree), 0, std::cos(30 * degree)), p = glm::normalize(glm::cross(dvec3(0, 1, 0), n));
+        const dvec3 n(std::sin(30 * degree), 0, std::cos(30 * degree)),
+            p = glm::normalize(glm::cross(dvec3(0, 1, 0), n));
         const dvec3 x = azimuth == 0 ? p : dvec3(0, 1, 0);
         add_sheets(tilted, {quartz(16190)}, n, x);
         for (int i = 0; i < 2; ++i)
-            tilted.rectangle(0.02, 0.02, tilted.surface(polarizer((i ? -1 : 1) * pi / 4)), at(0, 0, i ? -0.05 : -0.6));
+            tilted.rectangle(0.02, 0.02, tilted.surface(polarizer((i ? -1 : 1) * pi / 4)),
+                             at(0, 0, i ? -0.05 : -0.6));
         SceneOptions options;
         options.shaders = source_path("shaders");
         options.cache_folder = default_cache_folder();
@@ -184,7 +195,8 @@ TEST_CASE("wave plates between polarizers") {
         plan.width = plan.height = 32;
         CAPTURE(azimuth);
         const WindowMean red = window_mean(render_estimates(scene, plan), {}, 0);
-        CHECK(std::fabs(red.mean - 0.5 * std::pow(std::sin(0.5 * g0 * ratio), 2)) < 1e-4 + 5 * red.standard_error);
+        CHECK(std::fabs(red.mean - 0.5 * std::pow(std::sin(0.5 * g0 * ratio), 2)) <
+              1e-4 + 5 * red.standard_error);
     }
 }
 
@@ -194,7 +206,8 @@ TEST_CASE("a circular polarizer before a mirror is black, before white paper it 
     SceneBuilder paper = s;
     s.rectangle(0.4, 0.4, s.surface({{"class", "conductor"}}), at(0, 0, -1));
     check_seen(seen(s), 0);
-    // The same without the wave plate: light passes the polarizer twice. The mirror is too small to see past the sheets.
+    // The same without the wave plate: light passes the polarizer twice. The mirror is too small to see past
+    // the sheets.
     paper.rectangle(0.01, 0.01, paper.surface({{"class", "depolarizer"}}), at(0, 0, -0.9));
     paper.rectangle(0.4, 0.4, paper.surface({{"class", "conductor"}}), at(0, 0, -1));
     check_seen(seen(paper), 0.25);
@@ -221,12 +234,13 @@ TEST_CASE("example retarders: Michel-Lévy's colours") {
     const Estimates e = render_estimates(import_gltf(source_path("scenes/retarders.gltf")), plan);
     for (int strip : {3, 10, 21}) {  // 200, 550, 1100 nm
         const double g = 50.0 * (strip + 1), x = 0.1 * (strip - 15);
-        const glm::dvec3 expected =
-            rgb_of_radiance(white_light() * tabulate([&](double nm) { return 50 * std::pow(std::sin(pi * g / nm), 2); }));
+        const glm::dvec3 expected = rgb_of_radiance(
+            white_light() * tabulate([&](double nm) { return 50 * std::pow(std::sin(pi * g / nm), 2); }));
         const auto column = uint32_t((x / 1.8 + 1) / 2 * 180);
         CAPTURE(g);
         for (int k = 0; k < 3; ++k)
-            CHECK(window_mean(e, {column - 1, 40, 3, 10}, k).mean == doctest::Approx(expected[k]).epsilon(0.01).scale(40));
+            CHECK(window_mean(e, {column - 1, 40, 3, 10}, k).mean ==
+                  doctest::Approx(expected[k]).epsilon(0.01).scale(40));
     }
 }
 
@@ -237,13 +251,15 @@ TEST_CASE("two mirrors of glass reflect by their planes") {
 }
 
 TEST_CASE("two mirrors of gold whose planes are turned make light elliptic") {
-    const auto gold = [](SceneBuilder& s) { return s.surface({{"class", "conductor"}, {"eta", 0.183}, {"k", 3.43}}); };
+    const auto gold = [](SceneBuilder& s) {
+        return s.surface({{"class", "conductor"}, {"eta", 0.183}, {"k", 3.43}});
+    };
     const SceneBuilder s = two_mirrors(gold, dvec3(1, 0, 1) * std::sqrt(0.5));
     check_stokes(stokes(s), {0.888266, 0.017597, 0.016222, -0.006811});
 }
 
-// Light of a point source reaches the floor through sheets, by shadow rays, and from mirrors, glass and gold by hits, merging and
-// connections; the camera looks through a sheet of its own.
+// Light of a point source reaches the floor through sheets, by shadow rays, and from mirrors, glass and gold
+// by hits, merging and connections; the camera looks through a sheet of its own.
 TEST_CASE("polarized light: all algorithms agree") {
     SceneBuilder s;
     add_room(s);
@@ -251,13 +267,19 @@ TEST_CASE("polarized light: all algorithms agree") {
     s.rectangle(2, 2, s.surface(polarizer(0.4)), hanging(0, 1.9, 0));
     s.rectangle(2, 2, s.surface(wave_plate(1.1, 1.2)), hanging(0, 1.88, 0));
     s.rectangle(0.3, 0.3, s.surface(polarizer(0.9)), at(0, 0, 1.8));
-    s.sphere(0.5, s.surface({{"class", "conductor"}, {"eta", {0.2, 0.4, 1.4}}, {"k", {3.9, 2.4, 1.6}}, {"alpha", 0.2}}), at(-0.9, -1.4, -0.6));
+    s.sphere(
+        0.5,
+        s.surface({{"class", "conductor"}, {"eta", {0.2, 0.4, 1.4}}, {"k", {3.9, 2.4, 1.6}}, {"alpha", 0.2}}),
+        at(-0.9, -1.4, -0.6));
     s.medium("glass", {{"class", "homogeneous"}, {"ior", 1.5}});
     for (double alpha : {0.0, 0.3})
-        s.sphere(0.4, s.material({{"surface", {{"class", "dielectric"}, {"alpha", alpha}}}, {"inside", "glass"}}),
+        s.sphere(0.4,
+                 s.material({{"surface", {{"class", "dielectric"}, {"alpha", alpha}}}, {"inside", "glass"}}),
                  at(alpha > 0 ? 0.9 : 0.1, -1.4, -0.2));
-    s.rectangle(1.2, 1.2, s.surface({{"class", "thin_dielectric"}}), facing({1.2, 0.2, -1}, {-1, 0.4, 1}, {1, 0, 0}));
-    s.rectangle(1.2, 1.2, s.surface({{"class", "reflective_polarizer"}, {"axis", 0.3}, {"pass", 0.9}, {"block", 0.8}}),
+    s.rectangle(1.2, 1.2, s.surface({{"class", "thin_dielectric"}}),
+                facing({1.2, 0.2, -1}, {-1, 0.4, 1}, {1, 0, 0}));
+    s.rectangle(1.2, 1.2,
+                s.surface({{"class", "reflective_polarizer"}, {"axis", 0.3}, {"pass", 0.9}, {"block", 0.8}}),
                 facing({-1.1, 0.5, -1}, {1, 0.1, 0.8}, {1, 0, 0}));
     Comparison c;
     c.backward = 128, c.forward = 96, c.bidirectional = 48;

@@ -68,7 +68,8 @@ class SurfaceProbe {
                                         std::span<const MuellerQuery> queries);
 
   private:
-    Buffer records_, samples_, answers_, pairs_, values_, measured_points_, measured_colors_, queries_, muellers_;
+    Buffer records_, samples_, answers_, pairs_, values_, measured_points_, measured_colors_, queries_,
+        muellers_;
     std::vector<uint32_t> refs_;
     Kernel sample_, evaluate_, polarize_;
 };
