@@ -52,11 +52,12 @@ struct Parameter {
 struct ClassInfo {
     Interface interface = Interface::surface;
     uint32_t tag = 0;
-    std::string record, name, file;  // struct, class, GLSL file
-    std::string summary;             // the comment at the head of the file, without the example
-    std::string example;             // as it stands there, JSON; may be empty
-    bool says_polarization = false;  // NAME_mueller is there
-    bool polarizes = false;          // NAME_POLARIZES: scenes with the class carry polarization
+    std::string record, name, file;    // struct, class, GLSL file
+    std::string summary;               // the comment at the head of the file, without the example
+    std::string example;               // as it stands there, JSON; may be empty
+    bool says_polarization = false;    // NAME_mueller is there
+    bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization
+    bool has_general_mueller = false;  // its matrices are not of two blocks (shaders/lib/stokes.glsl)
     // Filled by reflection, at first use:
     uint32_t stride = 0;  // bytes of a record
     std::vector<Parameter> parameters;

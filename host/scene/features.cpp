@@ -10,6 +10,7 @@ Features Features::everything() {
     Features f;
     f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.textures = true;
     f.media = f.scattering = f.bending = f.interfaces = f.straight = f.light_tree = true;
+    f.general_mueller = true;
     f.body_count = most_bodies;
     f.light_count = 16;
     f.infinite_light_count = 2;
@@ -39,6 +40,7 @@ std::string Features::defines() const {
     define("INDEPENDENT_SAMPLES", independent_samples);
     define("SPECTRAL", spectral);
     define("HAS_POLARIZATION", polarization);
+    define("HAS_GENERAL_MUELLER", general_mueller);
     define("HAS_DISPERSION", spectral && dispersion);
     if (spectral) define("SPECTRUM_COUNT", spectrum_count);
     if (spectral) define("COLOR_LATTICE", color_lattice);

@@ -26,8 +26,10 @@ struct Features {
     bool straight = false;         // some surface lets light pass straight on: shadow rays go through
     bool spectral = false;         // paths carry wavelengths instead of colours
     bool polarization = false;     // paths carry Stokes vectors
-    bool dispersion = false;       // some refractive index depends on the wavelength
-    uint32_t spectrum_count = 0;   // room for so many
+    bool general_mueller =
+        false;                    // a class has matrices that are not of two blocks (shaders/lib/stokes.glsl)
+    bool dispersion = false;      // some refractive index depends on the wavelength
+    uint32_t spectrum_count = 0;  // room for so many
     bool independent_samples = false;  // hashes take the place of Sobol' points
     bool light_tree = false;
     uint32_t spectral_bins = 0;    // of a spectral image; set by the renderer

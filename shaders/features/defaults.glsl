@@ -69,6 +69,9 @@
 #ifndef HAS_POLARIZATION
 #define HAS_POLARIZATION 0
 #endif
+#ifndef HAS_GENERAL_MUELLER
+#define HAS_GENERAL_MUELLER 0
+#endif
 #ifndef HAS_DISPERSION
 #define HAS_DISPERSION 0
 #endif

@@ -1,8 +1,6 @@
 // Sheets of no thickness that light passes straight through. Angles are about the normal, from the tangent, counter-clockwise seen
 // from the side of the normal.
-#ifndef SURFACES_HAVE_TANGENTS
 #define SURFACES_HAVE_TANGENTS  // features/normal_maps.glsl: frames follow the surface's tangent
-#endif
 #include "lib/accurate_math.glsl"
 #include "lib/stokes.glsl"
 

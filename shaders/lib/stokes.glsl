@@ -7,8 +7,10 @@
 //             have Verdet's signs: r_s = (n cos - n' cos') / (+), r_p = (n' cos - n cos') / (+).
 //
 // Where none is named, the frame of light that travels along d is that of stokes_axis(d), so that frames need not be kept.
+#include "features/defaults.glsl"
 #include "features/spectrum.glsl"
 #include "lib/frames.glsl"
+#include "lib/member_if.glsl"
 
 vec3 stokes_axis(vec3 direction) { return frame_around(direction)[0]; }
 
@@ -17,10 +19,11 @@ struct Polarization { Spectrum s1, s2, s3; };
 
 Polarization unpolarized() { return Polarization(Spectrum(0), Spectrum(0), Spectrum(0)); }
 
-// (cos, sin) of twice the angle by which x must be turned to lie along `axis`, counter-clockwise seen against `direction`.
+// (cos, sin) of twice the angle by which x must be turned to lie along `axis`, counter-clockwise seen against `direction`. All are unit
+// vectors, both axes across the direction.
 vec2 double_angle(vec3 x, vec3 axis, vec3 direction) {
     float c = dot(x, axis), s = dot(cross(x, axis), direction);
-    return vec2(c * c - s * s, 2.0 * s * c) / max(c * c + s * s, 1e-30);
+    return vec2(c * c - s * s, 2.0 * s * c);
 }
 
 // The same light in a frame turned by half of that angle.
@@ -28,42 +31,46 @@ Polarization turned(Polarization p, vec2 angle) {
     return Polarization(angle.x * p.s1 + angle.y * p.s2, angle.x * p.s2 - angle.y * p.s1, p.s3);
 }
 
-// What an event does to polarization: the matrix in units of what the event lets through of unpolarized light, m[0] (any number
-// above 0), by rows. `from` and `to` are the first axes of the frames of light that comes and goes, in the frame of the surface.
+// What an event does to polarization, in units of what it lets through of unpolarized light: two blocks,
+//
+//     1  b   0   0
+//     b  e   0   0      of a depolarizer, in part at least, e < 1. Else light along x and y is kept in the ratio (1 + b) : (1 - b), e is 1,
+//     0  0   c  -d      and what swings at 45 degrees turns circular by the phase by which y is ahead of x: c and d are cos and sin
+//     0  0   d   c      of it times 2 sqrt(X Y) / (X + Y), the share that stays coherent.
+//
+// `from` and `to` are x of the frames of light that comes and goes, in the frame of the surface. A class whose matrix is another says
+// `is_general` and gives all of it, row by row and in any units; scenes without such classes have no room for that.
 struct Mueller {
     vec3 from, to;
-    Spectrum m[16];
+    Spectrum b, e, c, d;
+    MEMBER_IF(HAS_GENERAL_MUELLER, bool is_general;)
+    MEMBER_IF(HAS_GENERAL_MUELLER, Spectrum m[16];)
 };
+#include "features/general_mueller.glsl"
+
+Mueller blocks(vec3 from, vec3 to, Spectrum b, Spectrum e, Spectrum c, Spectrum d) {
+    Mueller m;
+    m.from = from, m.to = to, m.b = b, m.e = e, m.c = c, m.d = d;
+    not_general(m);
+    return m;
+}
 
 // None is left.
-Mueller depolarizing() {
-    Mueller m;
-    m.from = m.to = vec3(1, 0, 0);
-    for (int i = 0; i < 16; ++i) m.m[i] = Spectrum(i == 0 ? 1.0 : 0.0);
-    return m;
-}
+Mueller depolarizing() { return blocks(vec3(1, 0, 0), vec3(1, 0, 0), Spectrum(0), Spectrum(0), Spectrum(0), Spectrum(0)); }
 
-// A matrix of two blocks: light along x and y is kept in the ratio (1 + b) : (1 - b), and what swings at 45 degrees is turned into
-// circular light by the phase by which y is ahead of x, c = cos and d = sin of it times the share that stays coherent,
-// 2 sqrt(X Y) / (X + Y). All in units of the mean of X and Y.
-Mueller phase_plate(vec3 axis, Spectrum b, Spectrum c, Spectrum d) {
-    Mueller m = depolarizing();
-    m.from = m.to = axis;
-    m.m[1] = m.m[4] = b;
-    m.m[5] = Spectrum(1);
-    m.m[10] = m.m[15] = c;
-    m.m[11] = -d, m.m[14] = d;
-    return m;
-}
+Mueller phase_plate(vec3 axis, Spectrum b, Spectrum c, Spectrum d) { return blocks(axis, axis, b, Spectrum(1), c, d); }
 
 // Of light that nothing happens to.
 Mueller passing(vec3 direction) { return phase_plate(stokes_axis(direction), Spectrum(0), Spectrum(1), Spectrum(0)); }
 
-// The same with the rest, a share of 1 - `part`, depolarized.
-Mueller partly(Mueller m, Spectrum part) {
-    for (int i = 1; i < 16; ++i) m.m[i] *= part;
+// Part of one and part of another, in the frames of the first.
+Mueller mixed(Mueller m, Mueller other, Spectrum part_of_other) {
+    m.b = mix(m.b, other.b, part_of_other), m.e = mix(m.e, other.e, part_of_other);
+    m.c = mix(m.c, other.c, part_of_other), m.d = mix(m.d, other.d, part_of_other);
     return m;
 }
+// The rest is depolarized.
+Mueller partly(Mueller m, Spectrum part) { return mixed(m, depolarizing(), 1.0 - part); }
 
 // The first axis at a facet of normal h, where light goes along w: across the plane of incidence, any across the normal where light
 // comes along it.
@@ -76,15 +83,15 @@ vec3 facet_axis(vec3 w, vec3 h) {
 // M applied to a Stokes vector (1, p), or (`transposed`) a row (1, p) to M: what becomes of p, and of S0, which is multiplied by
 // the result, 0 to 2.
 Spectrum apply_mueller(inout Polarization p, Mueller m, bool transposed) {
-    Spectrum s[4];
-    for (int i = 0; i < 4; ++i) {
-        ivec4 k = transposed ? ivec4(0, 4, 8, 12) + i : ivec4(0, 1, 2, 3) + 4 * i;
-        s[i] = m.m[k.x] + m.m[k.y] * p.s1 + m.m[k.z] * p.s2 + m.m[k.w] * p.s3;
-    }
-    Spectrum total = max(s[0], Spectrum(0));
-    Spectrum inverse = mix(1.0 / total, Spectrum(0), lessThanEqual(total, Spectrum(1e-20)));
-    p = Polarization(s[1] * inverse, s[2] * inverse, s[3] * inverse);
-    return total / m.m[0];
+    float sign = transposed ? -1.0 : 1.0;
+    Spectrum s0 = 1.0 + m.b * p.s1, s1 = m.b + m.e * p.s1;
+    Spectrum s2 = m.c * p.s2 - sign * m.d * p.s3, s3 = m.c * p.s3 + sign * m.d * p.s2;
+    Spectrum unit = Spectrum(1);
+    apply_general(m, p, transposed, s0, s1, s2, s3, unit);
+    s0 = max(s0, Spectrum(0));
+    Spectrum inverse = mix(1.0 / s0, Spectrum(0), lessThanEqual(s0, Spectrum(1e-20)));
+    p = Polarization(s1 * inverse, s2 * inverse, s3 * inverse);
+    return s0 / unit;
 }
 
 // The product of a row and a Stokes vector over that of their first elements, in one frame.

@@ -87,7 +87,7 @@ Mueller conductor_mueller(Conductor r, SurfaceContext c, vec3 from, vec3 to, uin
     Mueller m = fresnel_conductor_mueller(facet_axis(to, h), cosine, eta, k);
     Spectrum reflectance = untinted_value(r.reflectance);
     Mueller mirror = phase_plate(m.from, Spectrum(0), Spectrum(-1), Spectrum(0));
-    for (int i = 1; i < 16; ++i) m.m[i] = mix(m.m[i], mirror.m[i], greaterThanEqual(reflectance, Spectrum(0)));
+    m = mixed(m, mirror, mix(Spectrum(0), Spectrum(1), greaterThanEqual(reflectance, Spectrum(0))));
     if (!r.multiscatter || smooth_surface) return m;
     from.z *= side, to.z *= side, h.z *= side;
     Spectrum single = conductor_fresnel(r, c, side, cosine) * ggx_reflection(from, to, h, r.alpha);

@@ -1,8 +1,13 @@
 // A sheet that lets all light through and leaves none of its polarization.
 //
 // Example:
-//     {"materials": [{"name": "depolarizer", "extensions": {"ETD_optics": {
-//         "surface": {"class": "depolarizer"}}}}]}
+//     {"materials": [
+//         {"name": "depolarizer", "extensions": {"ETD_optics": {"surface": {"class": "depolarizer"}}}},
+//         {"name": "polarizer", "extensions": {"ETD_optics": {"surface": {"class": "linear_polarizer"}}}},
+//         {"name": "analyser", "extensions": {"ETD_optics": {"surface": {"class": "linear_polarizer", "axis": 1.5707963}}}}],
+//      "nodes": [
+//         {"translation": [0, 0.5, -0.6], "extensions": {"ETD_optics": {"geometry": {"class": "rectangle", "size": [1.2, 1], "material": 3}}}},
+//         {"translation": [0, 0.5, 0.6], "extensions": {"ETD_optics": {"geometry": {"class": "rectangle", "size": [1.2, 1], "material": 4}}}}]}
 #include "lib/sheets.glsl"
 
 struct Depolarizer {

@@ -7,8 +7,13 @@
 // sets it upright in the middle of the layer. Colours take 611, 549 and 464 nm.
 //
 // Example:
-//     {"materials": [{"name": "display cell", "extensions": {"ETD_optics": {
-//         "surface": {"class": "lc_cell", "thickness": 4330, "ior_ordinary": 1.5, "ior_extraordinary": 1.6}}}}]}
+//     {"materials": [
+//         {"name": "display cell", "extensions": {"ETD_optics": {"surface": {"class": "lc_cell", "thickness": 4330, "ior_ordinary": 1.5, "ior_extraordinary": 1.6}}}},
+//         {"name": "polarizer", "extensions": {"ETD_optics": {"surface": {"class": "linear_polarizer"}}}},
+//         {"name": "analyser", "extensions": {"ETD_optics": {"surface": {"class": "linear_polarizer", "axis": 1.5707963}}}}],
+//      "nodes": [
+//         {"translation": [0, 0.5, -0.6], "extensions": {"ETD_optics": {"geometry": {"class": "rectangle", "size": [1.2, 1], "material": 3}}}},
+//         {"translation": [0, 0.5, 0.6], "extensions": {"ETD_optics": {"geometry": {"class": "rectangle", "size": [1.2, 1], "material": 4}}}}]}
 #include "lib/sheets.glsl"
 #define LC_CELL_POLARIZES
 
@@ -74,6 +79,8 @@ Mueller lc_cell_mueller(LcCell r, SurfaceContext c, vec3 from, vec3 to, uint eve
     }
     Mueller m = depolarizing();
     m.from = m.to = facet_axis(to, vec3(0, 0, 1));
+    m.is_general = true;
+    for (int i = 0; i < 16; ++i) m.m[i] = Spectrum(i == 0 ? 1.0 : 0.0);
     m.m[5] = 1.0 - 2.0 * (y * y + z * z), m.m[6] = 2.0 * (x * y - w * z), m.m[7] = 2.0 * (x * z + w * y);
     m.m[9] = 2.0 * (x * y + w * z), m.m[10] = 1.0 - 2.0 * (x * x + z * z), m.m[11] = 2.0 * (y * z - w * x);
     m.m[13] = 2.0 * (x * z - w * y), m.m[14] = 2.0 * (y * z + w * x), m.m[15] = 1.0 - 2.0 * (x * x + y * y);

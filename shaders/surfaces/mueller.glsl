@@ -25,7 +25,8 @@ MuellerSheet mueller_resolve(MuellerSheet r, SurfaceContext c) { return r; }
 Spectrum mueller_transparency(MuellerSheet r, SurfaceContext c, vec3 wo) { return Spectrum(r.reflects ? 0.0 : r.matrix.row0.x); }
 
 Mueller mueller_mueller(MuellerSheet r, SurfaceContext c, vec3 from, vec3 to, uint event) {
-    Mueller m;
+    Mueller m = depolarizing();
+    m.is_general = true;
     m.from = axis_across(sheet_axis(r.axis), from), m.to = axis_across(sheet_axis(r.axis), to);
     mat4 columns = mat4(r.matrix.row0, r.matrix.row1, r.matrix.row2, r.matrix.row3);  // rows as columns
     bool behind = from.z < 0.0;

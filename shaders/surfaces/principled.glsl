@@ -186,7 +186,7 @@ Mueller principled_mueller(Principled r, SurfaceContext c, vec3 from, vec3 to, u
         principled_facet(m, cosine, reflected, transmitted);
         Spectrum metal = m.metal * mix(m.color, Spectrum(1), schlick_weight(cosine)) / max(reflected, Spectrum(1e-30));
         Mueller mirror = phase_plate(result.from, Spectrum(0), Spectrum(-1), Spectrum(0));
-        for (int k = 1; k < 16; ++k) result.m[k] = mix(result.m[k], mirror.m[k], clamp(metal, Spectrum(0), Spectrum(1)));
+        result = mixed(result, mirror, clamp(metal, Spectrum(0), Spectrum(1)));
     }
     if (!is_delta) {
         Spectrum all = Spectrum(0), facets = Spectrum(0);

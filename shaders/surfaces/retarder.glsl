@@ -5,8 +5,13 @@
 // 2010, "Optics of Liquid Crystal Displays", section 3.1). Colours take 611, 549 and 464 nm.
 //
 // Example:
-//     {"materials": [{"name": "quarter-wave plate", "extensions": {"ETD_optics": {
-//         "surface": {"class": "retarder", "retardance": 1.5707963}}}}]}
+//     {"materials": [
+//         {"name": "quarter-wave plate", "extensions": {"ETD_optics": {"surface": {"class": "retarder", "retardance": 1.5707963}}}},
+//         {"name": "polarizer", "extensions": {"ETD_optics": {"surface": {"class": "linear_polarizer"}}}},
+//         {"name": "analyser", "extensions": {"ETD_optics": {"surface": {"class": "linear_polarizer", "axis": 1.5707963}}}}],
+//      "nodes": [
+//         {"translation": [0, 0.5, -0.6], "extensions": {"ETD_optics": {"geometry": {"class": "rectangle", "size": [1.2, 1], "material": 3}}}},
+//         {"translation": [0, 0.5, 0.6], "extensions": {"ETD_optics": {"geometry": {"class": "rectangle", "size": [1.2, 1], "material": 4}}}}]}
 #include "lib/sheets.glsl"
 #define RETARDER_POLARIZES
 

@@ -4,7 +4,8 @@ layout(local_size_x = 64) in;
 
 struct Query { vec3 from, to; uint event; };
 layout(scalar, set = 0) readonly buffer Queries { Query queries[]; };
-layout(scalar, set = 0) writeonly buffer Muellers { Mueller muellers[]; };
+struct Matrix { vec3 from, to; Spectrum m[16]; };
+layout(scalar, set = 0) writeonly buffer Muellers { Matrix muellers[]; };
 layout(push_constant) uniform Push {
     uint count, surface;
     float ior_above, ior_below;
@@ -28,5 +29,9 @@ void main() {
     if (i >= count) return;
     SurfaceContext c = unbent_context(vec2(0), vec2(0), vec4(color_r, color_g, color_b, color_a), ior_above, ior_below,
                                       importance != 0u);
-    muellers[i] = mueller_of(surface, c, queries[i]);
+    Mueller m = mueller_of(surface, c, queries[i]);
+    const Spectrum none = Spectrum(0);
+    muellers[i].from = m.from, muellers[i].to = m.to;
+    Spectrum rows[16] = Spectrum[16](Spectrum(1), m.b, none, none, m.b, m.e, none, none, none, none, m.c, -m.d, none, none, m.d, m.c);
+    for (uint k = 0u; k < 16u; ++k) muellers[i].m[k] = m.is_general ? m.m[k] : rows[k];
 }

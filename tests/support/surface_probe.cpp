@@ -18,7 +18,9 @@ constexpr uint32_t max_queries = 1 << 12;
 Kernel probe_kernel(ShaderSources sources, const std::string& name, const BufferTable& buffers) {
     sources.generated[name] = test_kernel_text(name);
     CompileOptions options;
-    options.defines = Features{}.defines();
+    Features features;
+    features.general_mueller = true;
+    options.defines = features.defines();
     return Kernel(test_device(), compile_shader(sources, name, options), buffers);
 }
 
