@@ -26,6 +26,18 @@ Kernel probe_kernel(ShaderSources sources, const std::string& name, const Buffer
 
 uint32_t groups(size_t count) { return uint32_t((count + 63) / 64); }
 
+std::vector<PushValue> push_values(uint32_t count, uint32_t surface, const SurfaceSurroundings& at) {
+    return {{"count", count},
+            {"surface", surface},
+            {"ior_above", at.ior_above},
+            {"ior_below", at.ior_below},
+            {"importance", uint32_t(at.importance)},
+            {"color_r", at.color.x},
+            {"color_g", at.color.y},
+            {"color_b", at.color.z},
+            {"color_a", at.color.w}};
+}
+
 }  // namespace
 
 std::string test_kernel_text(const std::string& name) {
@@ -97,21 +109,11 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
 SurfaceSamples SurfaceProbe::sample(size_t record, const SurfaceSurroundings& at, glm::vec3 wo,
                                     uint32_t count, uint32_t seed) {
     REQUIRE(count <= max_count);
+    std::vector<PushValue> values = push_values(count, refs_.at(record), at);
+    for (const PushValue& value : {PushValue{"seed", seed}, {"wo_x", wo.x}, {"wo_y", wo.y}, {"wo_z", wo.z}})
+        values.push_back(value);
     CommandList list(test_device());
-    list.dispatch(sample_, groups(count),
-                  {{"count", count},
-                   {"seed", seed},
-                   {"surface", refs_.at(record)},
-                   {"wo_x", wo.x},
-                   {"wo_y", wo.y},
-                   {"wo_z", wo.z},
-                   {"ior_above", at.ior_above},
-                   {"ior_below", at.ior_below},
-                   {"importance", uint32_t(at.importance)},
-                   {"color_r", at.color.x},
-                   {"color_g", at.color.y},
-                   {"color_b", at.color.z},
-                   {"color_a", at.color.w}});
+    list.dispatch(sample_, groups(count), values);
     list.run();
     const glm::vec4 answer = answers_.read_array<glm::vec4>(1)[0];
     return {samples_.read_array<SurfaceSample>(count), glm::vec3(answer), (int(answer.w) & 1) != 0,
@@ -126,15 +128,7 @@ std::vector<SurfaceValue> SurfaceProbe::evaluate(size_t record, const SurfaceSur
         pairs_.write(part.data(), part.size_bytes());
         CommandList list(test_device());
         list.dispatch(evaluate_, groups(part.size()),
-                      {{"count", uint32_t(part.size())},
-                       {"surface", refs_.at(record)},
-                       {"ior_above", at.ior_above},
-                       {"ior_below", at.ior_below},
-                       {"importance", uint32_t(at.importance)},
-                       {"color_r", at.color.x},
-                       {"color_g", at.color.y},
-                       {"color_b", at.color.z},
-                       {"color_a", at.color.w}});
+                      push_values(uint32_t(part.size()), refs_.at(record), at));
         list.run();
         const auto values = values_.read_array<SurfaceValue>(part.size());
         result.insert(result.end(), values.begin(), values.end());
@@ -149,15 +143,7 @@ std::vector<MuellerAnswer> SurfaceProbe::polarize(size_t record, const SurfaceSu
     queries_.write(queries.data(), queries.size_bytes());
     CommandList list(test_device());
     list.dispatch(polarize_, groups(queries.size()),
-                  {{"count", uint32_t(queries.size())},
-                   {"surface", refs_.at(record)},
-                   {"ior_above", at.ior_above},
-                   {"ior_below", at.ior_below},
-                   {"importance", uint32_t(at.importance)},
-                   {"color_r", at.color.x},
-                   {"color_g", at.color.y},
-                   {"color_b", at.color.z},
-                   {"color_a", at.color.w}});
+                  push_values(uint32_t(queries.size()), refs_.at(record), at));
     list.run();
     return muellers_.read_array<MuellerAnswer>(queries.size());
 }
