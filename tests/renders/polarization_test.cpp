@@ -295,6 +295,23 @@ TEST_CASE("polarized light: all algorithms agree") {
     check_against_backward(s, c);
 }
 
+// In S0 a wrong sign of all rows' S3 shows nowhere but where they meet the vectors of forward paths.
+TEST_CASE("circular light meets circular analysers in connections") {
+    SceneBuilder s;
+    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
+    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
+    s.perspective(1.2, at(0, 0, 1.95));
+    add_lamp(s, 1.5);
+    s.rectangle(2, 2, s.surface(polarizer(0)), hanging(0, 1.9, 0));
+    s.rectangle(2, 2, s.surface(wave_plate(pi / 4, pi / 2)), hanging(0, 1.88, 0));
+    s.rectangle(0.4, 0.4, s.surface(polarizer(0)), at(0, 0, 1.85));
+    s.rectangle(0.4, 0.4, s.surface(wave_plate(pi / 4, pi / 2)), at(0, 0, 1.8));
+    Comparison c;
+    c.backward = 64, c.forward = 0, c.bidirectional = 32;
+    c.largest_error = 0.01;
+    check_against_backward(s, c);
+}
+
 TEST_CASE("polarized light in fog: all algorithms agree") {
     SceneBuilder s;
     s.medium("fog", {{"class", "homogeneous"}, {"scattering", 0.5}, {"phase", {{"class", "rayleigh"}}}});
