@@ -3,7 +3,7 @@
 #
 #   tools/test.sh             the suite
 #   tools/test.sh long        the longer statistical runs, too
-#   tools/test.sh drivers     the device tests again on Mesa 22.3 and SwiftShader, unpacked beside the installed driver
+#   tools/test.sh drivers     the device tests again on Mesa 22.3 and, of images a few, SwiftShader, unpacked beside the installed driver
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools/build.sh release
