@@ -54,6 +54,7 @@ nlohmann::json checkpoint_identity(const RenderOptions& options, const Scene& sc
             {"algorithm", algorithm_name(options.algorithm)},
             {"color", scene.features.spectral ? "spectral" : "rgb"},
             {"spectral-bins", options.spectral_bins},
+            {"polarization", scene.features.polarization},
             {"device", device.description.name + " " + device.description.driver}};
 }
 
@@ -107,6 +108,7 @@ int render_command(const RenderOptions& given) {
     settings.schedule = options.schedule;
     settings.vertex_bytes = options.vertex_bytes;
     settings.spectral_bins = options.spectral_bins;
+    settings.stokes = receiver.stokes;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
     nlohmann::json identity;
     if (!options.checkpoint.empty() || !options.resume.empty())

@@ -183,12 +183,21 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
     auto place = [&](const char* key, std::vector<PlacedObject>& objects) {
         std::optional<JsonAt> at = find_object(*optics, key);
         if (!at) return;
-        bool is_geometry = &objects == &import.scene.shapes;
+        bool is_geometry = &objects == &import.scene.shapes,
+             is_receiver = &objects == &import.scene.receivers;
+        // A camera of glTF that is a receiver already: what is said here is said of that.
+        if (is_receiver && node->contains("camera") && !(*at)->contains("class")) {
+            only_members(*at, {"stokes"});
+            objects.back().stokes = boolean(*at, "stokes", false);
+            return;
+        }
         std::string name = text(node, "name", node.pointer);
-        PlacedObject object{
-            name,
-            is_geometry ? object_description(import, *at, {"material"}) : object_description(import, *at, {}),
-            world_from_local};
+        PlacedObject object{name,
+                            is_geometry   ? object_description(import, *at, {"material"})
+                            : is_receiver ? object_description(import, *at, {"stokes"})
+                                          : object_description(import, *at, {}),
+                            world_from_local};
+        if (is_receiver) object.stokes = boolean(*at, "stokes", false);
         if (is_geometry) {
             auto material = index(*at, "material", array_size(import.root, "materials"), "/materials");
             object.material = material ? *material : default_material(import);

@@ -83,7 +83,8 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
 }
 
 uint64_t ForwardRays::splat_bytes() const {
-    return uint64_t(settings_.width) * settings_.height * (scene_.features.spectral ? 32 : 24);
+    return uint64_t(settings_.width) * settings_.height * (scene_.features.spectral ? 32 : 24) *
+           (settings_.stokes ? 4 : 1);
 }
 
 BufferTable ForwardRays::buffers() const {

@@ -120,14 +120,18 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
         choice_ = choose_algorithm(device, scene, settings);
     settings_.algorithm = choice_.algorithm;
     settings_.forward_paths = choice_.forward_paths;
-    const Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
-    film_ = std::make_unique<Film>(device, settings.width, settings.height, techniques.merge);
+    settings_.stokes &= scene.features.polarization;
+    Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
+    techniques.stokes = settings_.stokes;
+    film_ =
+        std::make_unique<Film>(device, settings.width, settings.height, techniques.merge, settings_.stokes);
     if (!settings.restarts_first) film_->clear();
     BufferTable film = film_->buffers();
     film["CounterSums"] = &counter_sums_;
     scene.features.spectral_bins = scene.features.spectral ? settings.spectral_bins : 0;
     if (scene.features.spectral_bins > 0) {
-        spectral_film_.emplace(device, settings.width * settings.height, settings.spectral_bins);
+        spectral_film_.emplace(device, settings.width * settings.height, settings.spectral_bins,
+                               settings_.stokes);
         film.merge(spectral_film_->buffers());
     }
     start_media_ = std::make_unique<StartMedia>(device, scene, techniques.forward);
@@ -260,8 +264,10 @@ void Renderer::read_picture(std::vector<glm::vec3>& picture) {
         picture_ = Buffer(device_, uint64_t(most_pixels_) * sizeof(glm::vec3), "Picture");
         BufferTable buffers = film_->buffers();
         buffers["Picture"] = &picture_;
-        develop_film_ = make_color_kernel(device_, scene_, "kernels/develop_film.comp", buffers,
-                                          fmt::format("#define MERGE_VERTICES {}\n", int(film_->merging())));
+        develop_film_ =
+            make_color_kernel(device_, scene_, "kernels/develop_film.comp", buffers,
+                              fmt::format("#define MERGE_VERTICES {:d}\n#define STOKES_IMAGE {:d}\n",
+                                          film_->merging(), film_->stokes()));
     }
     const uint32_t pixels = settings_.width * settings_.height;
     commands_.dispatch(develop_film_, (pixels + develop_film_.group_size() - 1) / develop_film_.group_size(),

@@ -47,6 +47,7 @@ struct RenderSettings {
     float merge_radius = 1;                       // of the first pass, in widths of a pixel; > 0
     bool restarts_first = false;                  // before any pass: the film is not cleared until then
     uint32_t spectral_bins = 0;  // of a spectral image, where paths carry wavelengths; 0 = none
+    bool stokes = false;         // S1 to S3, too, where paths carry polarization
 };
 
 // What a film shows, and in how many pixels.

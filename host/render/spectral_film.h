@@ -13,24 +13,24 @@ namespace etendue {
 
 class SpectralFilm {
   public:
-    SpectralFilm(Device& device, uint32_t pixels, uint32_t bins);
+    SpectralFilm(Device& device, uint32_t pixels, uint32_t bins, bool stokes = false);  // S1 to S3, too
     BufferTable buffers() const;
     void resize(uint32_t pixels) { pixels_ = pixels; }  // as Film::resize
     void clear();
     std::vector<std::byte> read() const;
     void write(const std::vector<std::byte>& state);  // of a film of the same size
 
-    // Adds a channel a bin, the mean over `passes` of the spectral radiance in the bin, W / (m² sr nm), and
-    // the attributes of the layout of Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout for Spectral
-    // Images".
+    // Adds a channel a bin (and S1 to S3), the mean over `passes` of the spectral radiance in the bin, W /
+    // (m² sr nm), and the attributes of the layout of Fichet, Pacanowski & Wilkie 2021, "An OpenEXR Layout
+    // for Spectral Images".
     void add_to(Image& image, uint64_t passes) const;
 
   private:
-    uint32_t pixels_, bins_;
+    uint32_t pixels_, bins_, layers_;
     Buffer sums_;
 };
 
-// "S0.550,000000nm": of a bin by the wavelength in its middle.
-std::string spectral_channel(uint32_t bin, uint32_t bins);
+// "S0.550,000000nm": of a bin by the wavelength in its middle; `parameter`: of the Stokes vector.
+std::string spectral_channel(uint32_t bin, uint32_t bins, uint32_t parameter = 0);
 
 }  // namespace etendue

@@ -11,15 +11,17 @@ namespace etendue {
 std::string Techniques::backward_defines() const {
     return fmt::format(
         "#define FORWARD 0\n#define HAS_SPLATS {:d}\n#define FORWARD_ONLY {:d}\n#define BIDIRECTIONAL {:d}\n"
-        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n",
-        forward, forward && !bidirectional, bidirectional, connect, merge, beams);
+        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n"
+        "#define STOKES_IMAGE {:d}\n",
+        forward, forward && !bidirectional, bidirectional, connect, merge, beams, stokes);
 }
 
 std::string Techniques::forward_defines() const {
     return fmt::format(
         "#define FORWARD 1\n#define FORWARD_ONLY 0\n#define BIDIRECTIONAL {:d}\n"
-        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n",
-        bidirectional, connect, merge, beams);
+        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n"
+        "#define STOKES_IMAGE {:d}\n",
+        bidirectional, connect, merge, beams, stokes);
 }
 
 namespace {

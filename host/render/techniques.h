@@ -14,6 +14,7 @@ struct Techniques {
     bool connect = false;        // vertices are connected
     bool merge = false;          // vertices are merged
     bool beams = false;          // … in media that are the same everywhere along rays
+    bool stokes = false;         // the film has layers for S1 to S3 (shaders/features/stokes_images.glsl)
     std::string backward_defines() const, forward_defines() const;
 };
 

@@ -78,6 +78,7 @@ struct PlacedObject {
     ObjectDescription object;
     glm::dmat4 world_from_local{1.0};
     uint32_t material = 0;  // geometry only
+    bool stokes = false;    // receivers: S1 to S3 are wanted, too
 };
 
 // 8-bit images keep their bytes; float images (.hdr, .exr) are linear.

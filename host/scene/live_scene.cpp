@@ -133,7 +133,7 @@ bool same_receivers(const SceneObjects& a, const SceneObjects& b) {
     return std::equal(a.receivers.begin(), a.receivers.end(), b.receivers.begin(), b.receivers.end(),
                       [](const PlacedObject& x, const PlacedObject& y) {
                           return x.name == y.name && x.object.class_name == y.object.class_name &&
-                                 x.object.parameters == y.object.parameters &&
+                                 x.object.parameters == y.object.parameters && x.stokes == y.stokes &&
                                  x.world_from_local == y.world_from_local;
                       });
 }

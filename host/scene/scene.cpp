@@ -69,6 +69,7 @@ void SceneCompiler::choose_polarization() {
     bool polarizes = false;
     for (const auto& [interface, classes] : out_.classes)
         for (const ClassInfo* info : classes) polarizes |= info->polarizes;
+    for (const Receiver& receiver : out_.receivers) polarizes |= receiver.stokes;
     out_.features.polarization = options_.polarization == PolarizationMode::on ||
                                  (options_.polarization == PolarizationMode::automatic && polarizes);
 }

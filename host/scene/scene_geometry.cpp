@@ -114,8 +114,8 @@ void SceneCompiler::add_receivers() {
         const float aspect = object.parameters.value("aspect_ratio", 0.0f);
         object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
         added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local)));
-        out_.receivers.push_back({receiver.name, no_record, aspect, added.back().info, object.parameters,
-                                  receiver.world_from_local});
+        out_.receivers.push_back({receiver.name, no_record, aspect, receiver.stokes, added.back().info,
+                                  object.parameters, receiver.world_from_local});
     }
     const auto refs = references(Interface::receiver, added);
     for (size_t i = 0; i < refs.size(); ++i) out_.receivers[i].ref = refs[i];

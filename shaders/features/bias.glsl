@@ -3,7 +3,7 @@
 #include "lib/path.glsl"
 
 #if MERGE_VERTICES && !FORWARD
-void start_bias(inout Path path) { path.bias = Spectrum(0); }
+void start_bias(inout Path path) { path.bias = Received(0); }
 
 // Of the pass whose sample is added next: d is the difference of the density estimates that merging makes of the same
 // light vertices with radius r and with r / sqrt(2). A box kernel's bias is c r² + O(r⁴), so d has the mean c r² / 2: half
@@ -13,11 +13,11 @@ void add_bias(inout FilmPixel pixel, vec3 d) {
     pixel.bias_difference += pass_sign(pixel) * d;
 }
 
-void record_bias(inout FilmPixel pixel, Path path) {
-    vec3 bias = spectrum_rgb(path.bias);
+void record_bias(inout FilmPixel pixel, Path path, uint layer) {
+    vec3 bias = spectrum_rgb(layer_of(path.bias, layer));
     if (is_finite(bias)) add_bias(pixel, bias);
 }
 #else
 #define start_bias(path)
-#define record_bias(pixel, path)
+#define record_bias(pixel, path, layer)
 #endif

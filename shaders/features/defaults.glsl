@@ -7,6 +7,7 @@
 //   BEAMS             … in media that are the same everywhere along rays
 //   FORWARD_ONLY      what forward rays can bring is brought by nothing else
 //   HAS_SPLATS        forward rays bring light to pixels
+//   STOKES_IMAGE      the film has layers for S1 to S3 (features/stokes_images.glsl)
 #ifndef FORWARD
 #define FORWARD 0
 #endif
@@ -24,6 +25,9 @@
 #endif
 #ifndef FORWARD_ONLY
 #define FORWARD_ONLY 0
+#endif
+#ifndef STOKES_IMAGE
+#define STOKES_IMAGE 0
 #endif
 #ifndef HAS_SPLATS
 #define HAS_SPLATS 0

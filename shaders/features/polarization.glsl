@@ -4,33 +4,73 @@
 // are; an event takes or gives up to twice of what it does to unpolarized light.
 //
 // Rows and vectors meet where paths do (Mojzík et al. 2016, "Bi-directional Polarised Light Transport").
+#include "features/stokes_images.glsl"
+#include "interfaces/receiver.glsl"
+#include "lib/forward_pass.glsl"
 #include "lib/light_vertices.glsl"
 #include "lib/path.glsl"
 #include "lib/scattering.glsl"
 
 #if HAS_POLARIZATION
 
-void start_polarization(inout Path path) { path.polarization = unpolarized(); }
-
-// A path comes to s along `arriving` and leaves along `leaving`, unit vectors: what becomes of what it carries, and by what that is
-// multiplied.
-Spectrum through_event(inout Polarization p, ScatteringPoint s, Mueller m, vec3 arriving, vec3 leaving) {
-    bool transposed = !s.context.importance;
-    vec3 before = transposed ? -arriving : arriving, after = transposed ? -leaving : leaving;  // of light
-    p = turned(p, double_angle(stokes_axis(before), s.frame * (transposed ? m.to : m.from), before));
-    Spectrum factor = apply_mueller(p, m, transposed);
-    p = turned(p, double_angle(s.frame * (transposed ? m.from : m.to), stokes_axis(after), after));
-    return factor;
+// An event: by how much the frames of the vectors or rows that come must be turned to be those of its matrix, and the same behind it.
+struct EventFrames {
+    vec2 before, after;  // double_angle()
+    bool transposed;     // for rows
+};
+EventFrames event_frames(ScatteringPoint s, Mueller m, vec3 arriving, vec3 leaving) {
+    EventFrames f;
+    f.transposed = !s.context.importance;
+    vec3 before = f.transposed ? -arriving : arriving, after = f.transposed ? -leaving : leaving;  // of light
+    f.before = double_angle(stokes_axis(before), s.frame * (f.transposed ? m.to : m.from), before);
+    f.after = double_angle(s.frame * (f.transposed ? m.from : m.to), stokes_axis(after), after);
+    return f;
+}
+Stokes through_event(Stokes s, Mueller m, EventFrames f) {
+    return turned(apply_mueller(turned(s, f.before), m, f.transposed), f.after);
+}
+Spectrum through_event(inout Polarization p, Mueller m, EventFrames f) {
+    return split_stokes(through_event(Stokes(Spectrum(1), p.s1, p.s2, p.s3), m, f), p);
 }
 
+#if STOKES_IMAGE && !FORWARD
+Spectrum through_event(inout Carried c, Mueller m, EventFrames f) {
+    Spectrum factor = through_event(c.first, m, f);
+    Spectrum inverse = mix(1.0 / factor, Spectrum(0), lessThanEqual(factor, Spectrum(1e-20)));
+    for (int i = 0; i < 3; ++i) c.others[i] = scaled(through_event(c.others[i], m, f), inverse);
+    return factor;
+}
+Carried turned(Carried c, vec2 angle) {
+    c.first = turned(c.first, angle);
+    for (int i = 0; i < 3; ++i) c.others[i] = turned(c.others[i], angle);
+    return c;
+}
+Received meet(Carried c, Polarization light) {
+    return Stokes(meet(c.first, light), meet(c.others[0], light), meet(c.others[1], light), meet(c.others[2], light));
+}
+// The rows of a receiver, in the frame of the light that comes against `direction`.
+void start_polarization(inout Path path, uint receiver) {
+    path.polarization.first = unpolarized();
+    vec2 angle = double_angle(receiver_stokes_axis(receiver, path.direction), stokes_axis(-path.direction), -path.direction);
+    for (int i = 0; i < 3; ++i) {
+        Stokes row = Stokes(0);
+        row[i + 1] = Spectrum(1);
+        path.polarization.others[i] = turned(row, angle);
+    }
+}
+#else
+void start_polarization(inout Path path, uint receiver) { path.polarization = unpolarized(); }
+#endif
+
+// A path comes to s along its direction and leaves along another.
 void polarize(inout Path path, ScatteringPoint s, Mueller m, vec3 leaving) {
-    path.throughput *= through_event(path.polarization, s, m, path.direction, leaving);
+    path.throughput *= through_event(path.polarization, m, event_frames(s, m, path.direction, leaving));
 }
 
 // … and casts a shadow ray.
 void polarize_shadow(inout ShadowRay shadow, Path path, ScatteringPoint s, Mueller m) {
     shadow.polarization = path.polarization;
-    shadow.contribution *= through_event(shadow.polarization, s, m, path.direction, shadow.direction);
+    shadow.contribution *= through_event(shadow.polarization, m, event_frames(s, m, path.direction, shadow.direction));
 }
 
 // What a shadow ray passes straight through, at s.
@@ -38,7 +78,7 @@ void polarize_passage(inout ShadowRay shadow, ScatteringPoint s) {
     s.context.importance = FORWARD == 1;
     vec3 from = FORWARD == 1 ? s.wo : -s.wo;
     Mueller m = surface_transparency_mueller(s.surface, s.context, from);
-    shadow.contribution *= through_event(shadow.polarization, s, m, shadow.direction, shadow.direction);
+    shadow.contribution *= through_event(shadow.polarization, m, event_frames(s, m, shadow.direction, shadow.direction));
 }
 
 // The ray turns without an event, as in media that bend it.
@@ -69,6 +109,7 @@ Polarization polarization_of(LightVertex v) {
     }
     return p;
 }
+#if FORWARD
 // The direction is kept with less precision, and the frame follows it.
 void keep_polarization(inout LightVertex v, Path path) {
     vec3 kept = -decode_octahedral(v.direction);
@@ -76,35 +117,58 @@ void keep_polarization(inout LightVertex v, Path path) {
         packed_polarization(turned(path.polarization, double_angle(stokes_axis(path.direction), stokes_axis(kept), kept)));
 }
 
-// A row comes to s and merges there with forward vertex y.
-void polarize_merging(inout Spectrum brought, Path path, ScatteringPoint s, Mueller m, LightVertex y) {
-    Polarization row = path.polarization;
-    Spectrum factor = through_event(row, s, m, path.direction, decode_octahedral(y.direction));
-    brought *= factor * meet(row, polarization_of(y));
+#else
+// What a backward path brings that merges at s with forward vertex y, and would bring this of unpolarized light.
+Received merged_light(Spectrum brought, Path path, ScatteringPoint s, Mueller m, LightVertex y) {
+    Carried rows = path.polarization;
+    Spectrum factor = through_event(rows, m, event_frames(s, m, path.direction, decode_octahedral(y.direction)));
+    return scaled(meet(rows, polarization_of(y)), brought * factor);
 }
+#endif
 
 #if CONNECT_VERTICES
 // The light of y goes on at `there` to the end of a shadow ray, where it meets the row that has come along that.
 void polarize_end(inout ShadowRay shadow, LightVertex y, ScatteringPoint there, Mueller m) {
     shadow.end = polarization_of(y);
-    shadow.contribution *= through_event(shadow.end, there, m, -decode_octahedral(y.direction), -shadow.direction);
+    vec3 arriving = -decode_octahedral(y.direction);
+    shadow.contribution *= through_event(shadow.end, m, event_frames(there, m, arriving, -shadow.direction));
 }
 void end_unpolarized(inout ShadowRay shadow) { shadow.end = unpolarized(); }
-#define analysed(shadow, brought) ((brought) * meet(shadow.polarization, shadow.end))
 #else
 #define end_unpolarized(shadow)
+#endif
+
+// What reaches the receiver of light that a backward path comes to, or a shadow ray has passed on to its end: `brought`, if it is not
+// polarized.
+#if STOKES_IMAGE && !FORWARD
+Received seen_light(Path path, Spectrum brought) { return scaled(meet(path.polarization, unpolarized()), brought); }
+#else
+#define seen_light(path, brought) brought
+#endif
+#if HAS_POLARIZED_ENDS && !FORWARD
+#define analysed(shadow, brought) scaled(meet(shadow.polarization, shadow.end), brought)
+#elif STOKES_IMAGE && FORWARD
+Received analysed(ShadowRay shadow, Spectrum brought) {
+    vec3 axis = receiver_stokes_axis(forward_pass.receiver, -shadow.direction);
+    Polarization p = turned(shadow.polarization, double_angle(stokes_axis(shadow.direction), axis, shadow.direction));
+    return scaled(Stokes(Spectrum(1), p.s1, p.s2, p.s3), brought);
+}
+#elif STOKES_IMAGE
+#define analysed(shadow, brought) scaled(meet(shadow.polarization, unpolarized()), brought)
+#else
 #define analysed(shadow, brought) brought
 #endif
 
 #else
-#define start_polarization(path)
+#define start_polarization(path, receiver)
 #define polarize(path, s, mueller, leaving)
 #define polarize_shadow(shadow, path, s, mueller)
 #define polarize_passage(shadow, s)
 #define turn_polarization(path, before, after)
 #define keep_polarization(v, path)
-#define polarize_merging(brought, path, s, mueller, y)
+#define merged_light(brought, path, s, mueller, y) brought
 #define polarize_end(shadow, y, there, mueller)
 #define end_unpolarized(shadow)
+#define seen_light(path, brought) brought
 #define analysed(shadow, brought) brought
 #endif

@@ -15,6 +15,7 @@ float luminance(vec3 rgb) { return dot(rgb, vec3(0.2126, 0.7152, 0.0722)); }
 #if SPECTRAL
 
 #define Spectrum vec4
+#define Stokes mat4
 const uint LANES = 4u;
 const uint TINTED_SPECTRUM = 0x80000000u;
 const bool HAS_TINTS = HAS_TEXTURES == 1 || HAS_VERTEX_ATTRIBUTES == 1;  // something multiplies parameters by colours
@@ -117,6 +118,7 @@ void scale_spectrum(inout SpectrumRef ref, vec3 color) {
 #else
 
 #define Spectrum vec3
+#define Stokes mat4x3
 void begin_pass(uint pass) {}
 const uint LANES = 3u;
 vec3 spectrum_rgb(Spectrum s) { return s; }
@@ -135,3 +137,8 @@ void scale_spectrum(inout SpectrumRef ref, vec3 color) { ref.rgb *= color; }
 #endif
 
 bool is_black(Spectrum s) { return max_component(s) <= 0.0; }
+
+// Four spectra, S0 to S3 of light (lib/stokes.glsl): columns of a matrix, so that sums and differences are written as those of one.
+Stokes scaled(Stokes s, Spectrum factor) { return Stokes(s[0] * factor, s[1] * factor, s[2] * factor, s[3] * factor); }
+Spectrum scaled(Spectrum s, Spectrum factor) { return s * factor; }
+bool is_black(Stokes s) { return is_black(s[0]); }

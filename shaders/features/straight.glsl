@@ -26,7 +26,7 @@ void pass_medium(inout ShadowRay shadow, float distance) {
 #endif
 
 // Whether all of a shadow ray's way is one search for a hit, any hit.
-const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0 && HAS_POLARIZED_ENDS == 0;
+const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0;
 
 #if HAS_STRAIGHT
 // Where a ray goes on behind a surface.
@@ -36,7 +36,7 @@ const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0 && HAS_POL
 
 // What of the ray's contribution reaches its end. Each surface puts the ray a little beside its way, by the error bound along the
 // normal: it is aimed at its end again, or a light that it meets at a grazing angle would hide itself.
-Spectrum follow_shadow_ray(ShadowRay shadow) {
+Received follow_shadow_ray(ShadowRay shadow) {
     float t_left = shadow.t_max;
     vec3 direction = shadow.direction;
     while (true) {
@@ -47,11 +47,11 @@ Spectrum follow_shadow_ray(ShadowRay shadow) {
         SurfacePoint p = locate(hit, shadow.origin, direction);
         Crossing sides = meet_faces(shadow.origin, direction, shadow.around, hit, p);
         if (is_there(sides)) {
-            if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Spectrum(0);
+            if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Received(0);
             ScatteringPoint s = scattering_point(p, direction, sides);
             shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
             polarize_passage(shadow, s);
-            if (is_black(shadow.contribution)) return Spectrum(0);
+            if (is_black(shadow.contribution)) return Received(0);
         }
         vec3 origin = origin_behind(shadow.origin, p.position, p.error, p.geometric_normal, direction);
         if (t_left < INFINITY) {
@@ -62,15 +62,15 @@ Spectrum follow_shadow_ray(ShadowRay shadow) {
         }
         shadow.origin = origin;
         shadow.around = surroundings_towards(sides, p, shadow.direction);
-        if (bends_rays(shadow.around.medium)) return Spectrum(0);
+        if (bends_rays(shadow.around.medium)) return Received(0);
     }
 }
 
 #else
 #define origin_of_next(path, p, direction, straight) offset_origin(p.position, p.error, p.geometric_normal, direction)
 
-Spectrum follow_shadow_ray(ShadowRay shadow) {
-    if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return Spectrum(0);
+Received follow_shadow_ray(ShadowRay shadow) {
+    if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return Received(0);
     pass_medium(shadow, shadow.t_max);
     return analysed(shadow, weighed(shadow));
 }

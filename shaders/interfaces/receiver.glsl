@@ -8,10 +8,13 @@
 //                               film covers at the point's distance, m; > 0, continuous, also for points out of view; `slope` is the
 //                               most by which it changes over a metre, m/m
 //
+// Every record begins with the Placement of the node.
+//
 // `film` runs over [0,1]², x to the right, y down; film_aspect = width / height of the image. World space; node transforms
 // may scale, shear and mirror.
 #include "lib/constants.glsl"
 #include "lib/records.glsl"
+#include "lib/stokes.glsl"
 #include "lib/warps.glsl"
 
 struct CameraRay {
@@ -64,6 +67,19 @@ ReceiverSample receiver_connect(uint ref, vec3 point, vec2 u, float film_aspect)
 #undef CASE
     }
     return result;
+}
+
+// x of the frame of light that arrives against `direction`, a receiver's ray: y of its node, as the ray sees it, stands upright.
+vec3 receiver_stokes_axis(uint ref, vec3 direction) {
+    vec3 up = vec3(0, 1, 0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: up = name##_record(record_index(ref)).placement.world_from_local[1]; break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    vec3 axis = cross(direction, normalize(up));
+    float l = dot(axis, axis);
+    return l > 1e-12 ? axis * inversesqrt(l) : stokes_axis(-direction);
 }
 
 float receiver_footprint(uint ref, vec3 point, float film_aspect, out float slope) {

@@ -3,7 +3,6 @@
 // Reads: paths, splats. Writes: film, splats, counters. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { uint first_pixel, tile_pixels, samples; };
-#include "features/bias.glsl"
 #include "lib/wavefront.glsl"
 #include "stages/record_sample.glsl"
 
@@ -11,14 +10,12 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     Counters counters = no_counters();
     if (i < tile_pixels) {
-        FilmPixel pixel = film[first_pixel + i];
+        FilmPixel pixel = film[FILM_LAYERS * (first_pixel + i)];
         for (uint s = 0u; s < samples; ++s) {
             begin_pass(s);
-            Path path = path_states[s * tile_pixels + i];
-            record_bias(pixel, path);
-            record_sample(pixel, first_pixel + i, path.radiance, counters);
+            record_sample(pixel, first_pixel + i, path_states[s * tile_pixels + i], counters);
         }
-        film[first_pixel + i] = pixel;
+        film[FILM_LAYERS * (first_pixel + i)] = pixel;
     }
     store_counters(counters);
 }

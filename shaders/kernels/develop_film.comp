@@ -10,5 +10,6 @@ layout(scalar, set = 0) writeonly buffer Picture { vec3 picture[]; };
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= pixels) return;
-    picture[i] = film[i].samples == 0u ? vec3(0) : (film[i].sum + film[i].compensation) / float(film[i].samples);
+    FilmPixel pixel = film[FILM_LAYERS * i];
+    picture[i] = pixel.samples == 0u ? vec3(0) : (pixel.sum + pixel.compensation) / float(pixel.samples);
 }

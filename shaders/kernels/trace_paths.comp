@@ -14,7 +14,6 @@ layout(push_constant) uniform Push {
     uint seed;
 };
 
-#include "features/bias.glsl"
 #include "stages/emit_camera_ray.glsl"
 #include "stages/record_sample.glsl"
 #include "stages/scatter_path.glsl"
@@ -27,7 +26,7 @@ void main() {
     Path path;
     bool alive = false;
     FilmPixel sum;
-    if (pixel < end_pixel) sum = film[pixel];
+    if (pixel < end_pixel) sum = film[FILM_LAYERS * pixel];
     while (pixel < end_pixel) {
         if (!alive) {
             begin_pass(sample_index);
@@ -41,13 +40,12 @@ void main() {
         alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
         trace_shadows(shadow, vertex_shadow, path.radiance, counters);
         if (!alive) {
-            record_bias(sum, path);
-            record_sample(sum, pixel, path.radiance, counters);
+            record_sample(sum, pixel, path, counters);
             if (++sample_index == sample_count) {
-                film[pixel] = sum;
+                film[FILM_LAYERS * pixel] = sum;
                 pixel += lanes;
                 sample_index = 0u;
-                if (pixel < end_pixel) sum = film[pixel];
+                if (pixel < end_pixel) sum = film[FILM_LAYERS * pixel];
             }
         }
     }

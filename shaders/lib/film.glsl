@@ -3,6 +3,7 @@
 // sums over the even passes less those over the odd ones, which are independent of each other (lib/sampler.glsl).
 #include "features/spectrum.glsl"
 #include "features/defaults.glsl"
+#include "features/stokes_images.glsl"
 #include "lib/member_if.glsl"
 
 struct FilmPixel {
@@ -15,7 +16,7 @@ struct FilmPixel {
     MEMBER_IF(MERGE_VERTICES, vec3 bias;)  // features/bias.glsl
     MEMBER_IF(MERGE_VERTICES, vec3 bias_difference;)
 };
-layout(scalar, set = 0) buffer Film { FilmPixel film[]; };
+layout(scalar, set = 0) buffer Film { FilmPixel film[]; };  // the layers of a pixel (features/stokes_images.glsl) side by side
 
 void add_compensated(inout vec3 sum, inout vec3 compensation, vec3 value) {
     precise vec3 total = sum + value;

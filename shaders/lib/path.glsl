@@ -5,7 +5,7 @@
 #include "lib/bent_step.glsl"
 #include "lib/member_if.glsl"
 #include "lib/sampler.glsl"
-#include "lib/stokes.glsl"
+#include "features/stokes_images.glsl"
 
 // Where the next ray is a step of a bent one (features/bending.glsl).
 struct Bend {
@@ -28,9 +28,9 @@ struct Path {
 #if FORWARD
     uvec2 vertices;       // the last one stored of this path, and how many
 #else
-    Spectrum radiance;    // collected so far
+    Received radiance;    // collected so far
 #endif
-    MEMBER_IF(HAS_POLARIZATION, Polarization polarization;)  // features/polarization.glsl
+    MEMBER_IF(HAS_POLARIZATION, Carried polarization;)  // features/polarization.glsl
     MEMBER_IF(HAS_BENDING, Bend bend;)
     MEMBER_IF(HAS_SCATTERING, float passage;)  // of scattering media since the reference (features/weights.glsl)
     MEMBER_IF(BIDIRECTIONAL, float vcm;)       // features/mis.glsl
@@ -40,7 +40,7 @@ struct Path {
     MEMBER_IF(BIDIRECTIONAL, uint light;)         // where the path started
     MEMBER_IF(BIDIRECTIONAL, vec3 light_normal;)  // of its surface there
 #else
-    MEMBER_IF(MERGE_VERTICES, Spectrum bias;)  // difference of merging with two radii, for the estimate of its bias
+    MEMBER_IF(MERGE_VERTICES, Received bias;)  // difference of merging with two radii, for the estimate of its bias
 #endif
 };
 
@@ -58,7 +58,7 @@ struct ShadowRay {
     uint target;            // what it contributes to: forward the pixel; backward the slot of its path (lib/wavefront.glsl)
     Spectrum contribution;
     Surroundings around;
-    MEMBER_IF(HAS_POLARIZATION, Polarization polarization;)
+    MEMBER_IF(HAS_POLARIZATION, Carried polarization;)
     MEMBER_IF(HAS_POLARIZED_ENDS, Polarization end;)  // of the light that leaves its end
     MEMBER_IF(HAS_SCATTERING, float others;)  // of weigh(): the passage is known once the ray is traced
     MEMBER_IF(BEAMS, float others_apart;)     // that need no passage

@@ -30,6 +30,10 @@ vec2 double_angle(vec3 x, vec3 axis, vec3 direction) {
 Polarization turned(Polarization p, vec2 angle) {
     return Polarization(angle.x * p.s1 + angle.y * p.s2, angle.x * p.s2 - angle.y * p.s1, p.s3);
 }
+Stokes turned(Stokes s, vec2 angle) {
+    Polarization p = turned(Polarization(s[1], s[2], s[3]), angle);
+    return Stokes(s[0], p.s1, p.s2, p.s3);
+}
 
 // What an event does to polarization, in units of what it lets through of unpolarized light: two blocks,
 //
@@ -80,21 +84,24 @@ vec3 facet_axis(vec3 w, vec3 h) {
     return l > 1e-12 ? s * inversesqrt(l) : stokes_axis(h);
 }
 
-// M applied to a Stokes vector (1, p), or (`transposed`) a row (1, p) to M: what becomes of p, and of S0, which is multiplied by
-// the result, 0 to 2.
-Spectrum apply_mueller(inout Polarization p, Mueller m, bool transposed) {
+// M applied to a Stokes vector, or (`transposed`) a row to M, in units of what M lets through of unpolarized light.
+Stokes apply_mueller(Stokes s, Mueller m, bool transposed) {
     float sign = transposed ? -1.0 : 1.0;
-    Spectrum s0 = 1.0 + m.b * p.s1, s1 = m.b + m.e * p.s1;
-    Spectrum s2 = m.c * p.s2 - sign * m.d * p.s3, s3 = m.c * p.s3 + sign * m.d * p.s2;
-    Spectrum unit = Spectrum(1);
-    apply_general(m, p, transposed, s0, s1, s2, s3, unit);
-    s0 = max(s0, Spectrum(0));
-    Spectrum inverse = mix(1.0 / s0, Spectrum(0), lessThanEqual(s0, Spectrum(1e-20)));
-    p = Polarization(s1 * inverse, s2 * inverse, s3 * inverse);
-    return s0 / unit;
+    Stokes result = Stokes(s[0] + m.b * s[1], m.b * s[0] + m.e * s[1], m.c * s[2] - sign * m.d * s[3], m.c * s[3] + sign * m.d * s[2]);
+    apply_general(m, s, transposed, result);
+    return result;
 }
 
-// The product of a row and a Stokes vector over that of their first elements, in one frame.
+// What becomes of p, of a vector or row (1, p); that is multiplied by the result, 0 to 2.
+Spectrum split_stokes(Stokes s, out Polarization p) {
+    Spectrum s0 = max(s[0], Spectrum(0));
+    Spectrum inverse = mix(1.0 / s0, Spectrum(0), lessThanEqual(s0, Spectrum(1e-20)));
+    p = Polarization(s[1] * inverse, s[2] * inverse, s[3] * inverse);
+    return s0;
+}
+
+// The product of a row and a Stokes vector (1, light), in one frame.
+Spectrum meet(Stokes row, Polarization light) { return row[0] + row[1] * light.s1 + row[2] * light.s2 + row[3] * light.s3; }
 Spectrum meet(Polarization row, Polarization light) {
-    return max(1.0 + row.s1 * light.s1 + row.s2 * light.s2 + row.s3 * light.s3, Spectrum(0));
+    return max(meet(Stokes(Spectrum(1), row.s1, row.s2, row.s3), light), Spectrum(0));
 }

@@ -16,13 +16,13 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.origin = ray.origin;
     path.direction = ray.direction;
     path.throughput = Spectrum(ray.weight);
-    path.radiance = Spectrum(0);
+    path.radiance = Received(0);
     path.reference = ray.origin;
     path.pdf = 0.0;
     path.around = around_receiver();
     path.depth = 0u;
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
-    start_polarization(path);
+    start_polarization(path, receiver);
     start_bending(path);
     start_passage(path);
     start_weights(path, float(forward_pass.count) * ray.connect_pdf / (ray.density * float(size.x) * float(size.y)), 0.0);

@@ -36,7 +36,7 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
     if (free_path < to_surface) length = min(length, free_path + sure);
     // Of the lanes, one of which the free path is sampled for (lib/free_path.glsl).
     Spectrum share = path.throughput / max(dot(path.throughput, Spectrum(1)), 1e-30);
-    Spectrum inner = Spectrum(0), outer = Spectrum(0);
+    Received inner = Received(0), outer = Received(0);
     BeamQuery query;
     float slope;
     merge_radius(path.origin, slope);
@@ -61,11 +61,12 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
         float weight = meeting_share(path, y.previous) * mis.merging / (mis.merging + others);
         if (t > sure) weight /= max(dot(share, passage_along(path, t - sure).transmittance), 1e-30);
         Spectrum brought = passage.transmittance * y.throughput * (weight * value / (PI * square(radius)));
-        polarize_merging(brought, path, s, phase_mueller(s.phase, decode_octahedral(y.direction) * s.frame, s.wo), y);
-        if (2.0 * dot(aside, aside) < square(radius)) inner += brought;
-        else outer += brought;
+        Received light =
+            merged_light(brought, path, s, phase_mueller(s.phase, decode_octahedral(y.direction) * s.frame, s.wo), y);
+        if (2.0 * dot(aside, aside) < square(radius)) inner += light;
+        else outer += light;
     }
     Spectrum scale = path.throughput * forward_pass.path_flux;
-    sum.radiance += scale * (inner + outer);
-    sum.bias += scale * (outer - inner);  // as for surfaces (stages/merge_vertices.glsl)
+    sum.radiance += scaled(inner + outer, scale);
+    sum.bias += scaled(outer - inner, scale);  // as for surfaces (stages/merge_vertices.glsl)
 }

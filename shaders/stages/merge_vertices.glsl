@@ -22,12 +22,12 @@ bool lies_on_same(SurfacePoint p, ScatteringPoint s, LightVertex y, float radius
 struct Merging {
     GridQuery query;
     float radius;
-    Spectrum inner, outer;  // of vertices within radius / sqrt(2), and beyond
+    Received inner, outer;  // of vertices within radius / sqrt(2), and beyond
 };
 
 void begin_merging(out Merging m, SurfacePoint p) {
     m.radius = merge_radius(p.position);
-    m.inner = m.outer = Spectrum(0);
+    m.inner = m.outer = Received(0);
     begin_query(m.query, p.position, m.radius);
 }
 
@@ -46,9 +46,9 @@ void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s,
     float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
     Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));
     brought *= meeting_share(path, y.previous);
-    polarize_merging(brought, path, s, pair.mueller, y);
-    if (2.0 * dot(d, d) < square(m.radius)) m.inner += brought;
-    else m.outer += brought;
+    Received light = merged_light(brought, path, s, pair.mueller, y);
+    if (2.0 * dot(d, d) < square(m.radius)) m.inner += light;
+    else m.outer += light;
 }
 
 void end_merging(Merging m, inout Path path, SurfacePoint p, ScatteringPoint s) {
@@ -57,7 +57,7 @@ void end_merging(Merging m, inout Path path, SurfacePoint p, ScatteringPoint s) 
         Spectrum scattering = medium_scattering(s.sides.above.medium, p.position);
         scale = mix(scale / scattering, Spectrum(0), lessThanEqual(scattering, Spectrum(0)));
     }
-    path.radiance += scale * (m.inner + m.outer);
+    path.radiance += scaled(m.inner + m.outer, scale);
     float inner_share = in_volume(s) ? 2.0 * sqrt(2.0) - 1.0 : 1.0;  // size of the ball or disk over that of the smaller, less one
-    path.bias += scale * (m.outer - inner_share * m.inner);
+    path.bias += scaled(m.outer - inner_share * m.inner, scale);
 }

@@ -10,8 +10,8 @@
 #include "lib/events.glsl"
 #include "stages/arrive.glsl"
 
-// Radiance of `light` met by the path's ray, weighted against the other ways to bring it.
-Spectrum collect_light(Path path, uint light, LightHit hit) {
+// What `light`, met by the path's ray, brings to the pixel, weighted against the other ways to bring it.
+Received collect_light(Path path, uint light, LightHit hit) {
     Spectrum radiance = light_radiance(lights[light], path.direction, hit);
     float others = 0.0;
     if (!hit_stands_alone(path)) {
@@ -19,12 +19,12 @@ Spectrum collect_light(Path path, uint light, LightHit hit) {
         if (sampling > 0.0) sampling *= light_selection_probability(light, path.reference);
         others = others_of_hit(path, light, hit, sampling);
     }
-    return path.throughput * radiance * mis_weight(others);
+    return seen_light(path, path.throughput * radiance * mis_weight(others));
 }
 
-// Radiance of the primitive that is met, or of all that surrounds the scene, as the pixel receives it.
-Spectrum collect_emission(Path path, Arrival a) {
-    Spectrum sum = Spectrum(0);
+// The same of the primitive that is met, or of all that surrounds the scene.
+Received collect_emission(Path path, Arrival a) {
+    Received sum = Received(0);
     LightHit hit = LightHit(vec3(0), vec3(0), vec2(0), vec2(0));
     uint light = 0u, end = a.escapes ? uint(INFINITE_LIGHT_COUNT) : 0u;
     if (!a.scatters && !a.escapes) {
