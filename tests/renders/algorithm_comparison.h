@@ -14,40 +14,48 @@ struct Comparison {
     double tolerance = 0.002;      // of the mean over the image, besides four standard errors
     double largest_error = 0.005;  // that these may have, else the comparison says little
     float merge_radius = 0.1f;     // bias of merging grows with its square
+    bool stokes = false;           // S0 to S3 are compared
 };
 
 // Two sets of images of one scene, by what one is called. Pixels and tiles of 8 x 8 by Student's t over the
 // seeds: a false alarm in 1000 runs each. The mean of all by four standard errors: one in 1000 (15 degrees of
-// freedom). Seeds are fixed, so a build either passes always or never.
+// freedom). Seeds are fixed, so a build either passes always or never. `layers`: 4 of Stokes images.
 inline void check_agreement(const std::string& name, const Estimates& e, const Estimates& expected,
-                            double tolerance = 0.002, double largest_error = 0.005) {
+                            double tolerance = 0.002, double largest_error = 0.005, uint32_t layers = 1) {
     const Agreement pixels = agreement(e, expected, 1), tiles = agreement(e, expected, 8);
-    const WindowMean ours = window_mean(e), theirs = window_mean(expected);
-    const double error = std::hypot(ours.standard_error, theirs.standard_error);
-    const double bias = ours.mean - theirs.mean;
-    MESSAGE(name, ": pixels ", describe(pixels), "; tiles ", describe(tiles), "; bias ",
-            100 * bias / theirs.mean, " % +- ", 100 * error / theirs.mean, " %");
+    MESSAGE(name, ": pixels ", describe(pixels), "; tiles ", describe(tiles));
     CAPTURE(name);
-    CHECK(theirs.mean > 0);
     CHECK(pixels.holds);
     CHECK(tiles.holds);
     CHECK(pixels.rms_z < 1.15);
     CHECK(tiles.rms_z < 1.4);
-    CHECK(std::fabs(bias) < tolerance * theirs.mean + 4 * error);
-    CHECK(error < largest_error * theirs.mean);
+    double intensity = 0;
+    for (uint32_t layer = 0; layer < layers; ++layer) {
+        const Window window{0, layer * e.height / layers, e.width, e.height / layers};
+        const WindowMean ours = window_mean(e, window), theirs = window_mean(expected, window);
+        if (layer == 0) intensity = theirs.mean;
+        const double error = std::hypot(ours.standard_error, theirs.standard_error);
+        const double bias = ours.mean - theirs.mean;
+        MESSAGE(name, ": S", layer, " ", 100 * theirs.mean / intensity, " %, bias ", 100 * bias / intensity,
+                " % +- ", 100 * error / intensity, " %");
+        CAPTURE(layer);
+        CHECK(intensity > 0);
+        CHECK(std::fabs(bias) < tolerance * intensity + 4 * error);
+        CHECK(error < largest_error * intensity);
+    }
 }
 
 inline void check_against_backward(Scene& scene, const Comparison& c) {
     RenderPlan plan;
     plan.width = c.width, plan.height = c.height, plan.seeds = c.seeds;
-    plan.merge_radius = c.merge_radius;
+    plan.merge_radius = c.merge_radius, plan.stokes = c.stokes;
     plan.algorithm = Algorithm::backward, plan.passes = c.backward;
     const Estimates expected = render_estimates(scene, plan);
     const auto check = [&](Algorithm algorithm, uint32_t passes, uint32_t first_seed) {
         if (passes == 0) return;
         plan.algorithm = algorithm, plan.passes = passes, plan.first_seed = first_seed;
         check_agreement(algorithm_name(algorithm), render_estimates(scene, plan), expected, c.tolerance,
-                        c.largest_error);
+                        c.largest_error, c.stokes ? 4 : 1);
     };
     check(Algorithm::forward, c.forward, 1001);
     check(Algorithm::bidirectional, c.bidirectional, 2001);

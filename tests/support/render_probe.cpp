@@ -198,6 +198,7 @@ RenderSettings settings_of(const Scene& scene, const RenderPlan& plan) {
     settings.forward_paths = plan.forward_paths;
     settings.merge_radius = plan.merge_radius;
     if (plan.vertex_bytes) settings.vertex_bytes = plan.vertex_bytes;
+    settings.stokes = plan.stokes;
     for (const Receiver& receiver : scene.receivers)
         if (settings.receiver == no_record && (plan.receiver.empty() || receiver.name == plan.receiver))
             settings.receiver = receiver.ref;
@@ -223,8 +224,11 @@ void add_counters(RenderCounters& sum, const RenderCounters& counters) {
 Estimates render_estimates(Scene& scene, const RenderPlan& plan) {
     Renderer renderer(test_device(), scene, settings_of(scene, plan));
     Estimates result;
-    result.width = plan.width, result.height = plan.height, result.seeds = plan.seeds;
-    result.mean.assign(3 * size_t(plan.width) * plan.height, 0.0);
+    const std::vector<std::string> layers =
+        plan.stokes ? std::vector<std::string>{"", "S1.", "S2.", "S3."} : std::vector<std::string>{""};
+    result.width = plan.width, result.height = plan.height * uint32_t(layers.size()),
+    result.seeds = plan.seeds;
+    result.mean.assign(3 * size_t(result.width) * result.height, 0.0);
     for (uint32_t s = 0; s < plan.seeds; ++s) {
         if (s > 0) renderer.restart(plan.first_seed + s);
         for (uint32_t done = 0; done < plan.passes;) {
@@ -233,10 +237,13 @@ Estimates render_estimates(Scene& scene, const RenderPlan& plan) {
             done += count;
         }
         const Image image = renderer.develop();
-        std::vector<float>& pixels = result.images.emplace_back(result.mean.size());
-        for (int c = 0; c < 3; ++c) {
-            const auto values = plane(image, size_t(find_channel(image, std::string(1, "RGB"[c]))));
-            for (size_t i = 0; i < values.size(); ++i) pixels[3 * i + size_t(c)] = values[i];
+        std::vector<float>& pixels = result.images.emplace_back();
+        for (const std::string& layer : layers) {
+            std::array<std::span<const float>, 3> planes;
+            for (size_t c = 0; c < 3; ++c)
+                planes[c] = plane(image, size_t(find_channel(image, layer + "RGB"[c])));
+            for (size_t i = 0; i < pixel_count(image); ++i)
+                for (const auto& values : planes) pixels.push_back(values[i]);
         }
         for (size_t i = 0; i < pixels.size(); ++i) result.mean[i] += double(pixels[i]) / plan.seeds;
         add_counters(result.counters, renderer.counters());

@@ -69,12 +69,13 @@ struct RenderPlan {
     double forward_paths = 1;   // a pixel and pass
     float merge_radius = 1;     // as in RenderSettings
     uint64_t vertex_bytes = 0;  // 0 = as in RenderSettings
+    bool stokes = false;        // images of S0 to S3, one below the other
 };
 
 // Means and their standard errors from images of independent seeds. Three values a pixel: R, G, B.
 struct Estimates {
-    uint32_t width = 0, height = 0, seeds = 0;
-    std::vector<std::vector<float>> images;  // one a seed
+    uint32_t width = 0, height = 0, seeds = 0;  // height: of all images of a Stokes vector together
+    std::vector<std::vector<float>> images;     // one a seed
     std::vector<double> mean;
     RenderCounters counters;  // of all seeds
     double at(uint32_t x, uint32_t y, int channel) const {
