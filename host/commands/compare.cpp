@@ -33,6 +33,14 @@ void print_comparison(const CompareOptions& options, const Comparison& compariso
     fmt::print("\n");
     if (comparison.z_test) print_z_test("z, pixels", *comparison.z_test);
     if (comparison.tile_test) print_z_test("z, 16x16 ", *comparison.tile_test);
+    if (comparison.stokes) {
+        const StokesComparison& s = *comparison.stokes;
+        for (size_t k = 0; k < 3; ++k)
+            fmt::print("S{}        rms {:.4f} %, bias {:+.4f} % of the mean intensity\n", k + 1,
+                       100 * s.rms[k], 100 * s.bias[k]);
+        if (s.z_test) print_z_test("z, S1-S3 ", *s.z_test);
+        if (s.tile_test) print_z_test("z, 16x16 ", *s.tile_test);
+    }
     for (const PixelDifference& pixel : comparison.worst)
         fmt::print("worst     ({}, {})  {:.4g}  image {:.5g}  reference {:.5g}\n", pixel.x, pixel.y,
                    pixel.relative_squared, fmt::join(pixel.image, " "), fmt::join(pixel.reference, " "));

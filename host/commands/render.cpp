@@ -11,6 +11,7 @@
 #include "host/image/checkpoint.h"
 #include "host/image/exr.h"
 #include "host/image/image.h"
+#include "host/image/polarization.h"
 #include "host/interrupt.h"
 #include "host/open_scene.h"
 #include "host/progress.h"
@@ -99,6 +100,10 @@ int render_command(const RenderOptions& given) {
     if (scene.lights == 0)
         show_note(progress, fmt::format("warning: {}: the scene has no light: the image is black",
                                         options.scene.string()));
+    if (receiver.stokes && !scene.features.polarization)
+        show_note(progress,
+                  fmt::format("warning: {} asks for Stokes vectors: without polarization there are none",
+                              receiver.name));
     options.size = image_size(receiver, options);
 
     RenderSettings settings;
@@ -190,6 +195,7 @@ int render_command(const RenderOptions& given) {
     Image image = renderer->develop(options.aovs);
     const RelativeError error = renderer->relative_error();
     if (options.aovs) renderer->add_aovs(image, aov_samples);
+    if (options.aovs && has_stokes(image)) add_polarization(image);
     renderer->add_spectra(image);
     image.attributes.merge(std::map<std::string, Attribute>{
         {"scene", options.scene.string()},

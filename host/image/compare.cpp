@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "host/error.h"
+#include "host/image/polarization.h"
 
 namespace etendue {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 using Planes = std::vector<std::span<const float>>;
 
 bool is_layer(const std::string& channel) {
-    for (const char* layer : {"albedo.", "normal.", "depth.", "error."})
+    for (const char* layer : {"albedo.", "normal.", "depth.", "error.", "polarization.", "S1.", "S2.", "S3."})
         if (channel.starts_with(layer)) return true;
     return false;
 }
@@ -53,6 +54,36 @@ std::vector<float> values_at(const Planes& planes, size_t pixel) {
     std::vector<float> values;
     for (auto plane : planes) values.push_back(plane[pixel]);
     return values;
+}
+
+StokesComparison compare_stokes(const Image& image, const Image& reference,
+                                const std::vector<size_t>& pixels) {
+    StokesComparison result;
+    std::vector<std::string> names;
+    double intensity = 0;
+    const auto values = [](const Image& of, const std::string& name) {
+        return plane(of, size_t(find_channel(of, name)));
+    };
+    for (const char* channel : {"R", "G", "B"}) {
+        const auto s0 = values(reference, channel);
+        for (size_t p : pixels) intensity += s0[p] / double(3 * pixels.size());
+        for (int k = 0; k < 3; ++k) {
+            names.push_back(fmt::format("S{}.{}", k + 1, channel));
+            const auto a = values(image, names.back()), b = values(reference, names.back());
+            for (size_t p : pixels) {
+                const double difference = double(a[p]) - double(b[p]);
+                result.rms[size_t(k)] += difference * difference / double(3 * pixels.size());
+                result.bias[size_t(k)] += difference / double(3 * pixels.size());
+            }
+        }
+    }
+    for (size_t k = 0; k < 3; ++k) {
+        result.rms[k] = ratio(std::sqrt(result.rms[k]), intensity);
+        result.bias[k] = ratio(result.bias[k], intensity);
+    }
+    result.z_test = z_test(image, reference, names);
+    result.tile_test = z_test(image, reference, names, z_tile);
+    return result;
 }
 
 }  // namespace
@@ -118,6 +149,7 @@ Comparison compare_images(const Image& image, const Image& reference, const std:
     }
     result.z_test = z_test(image, reference, result.channels);
     result.tile_test = z_test(image, reference, result.channels, z_tile);
+    if (has_stokes(image) && has_stokes(reference)) result.stokes = compare_stokes(image, reference, finite);
     return result;
 }
 

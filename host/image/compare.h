@@ -3,6 +3,7 @@
 // `image` is I and `reference` R below. Pixels that are not finite in either are left out of every mean and
 // counted.
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,13 @@ struct ZTest {
 
 inline constexpr uint32_t z_tile = 16;
 
+// S1 to S3 of two images that have them: differences in units of the mean intensity of the reference, and the
+// tests over all three.
+struct StokesComparison {
+    std::array<double, 3> rms{}, bias{};
+    std::optional<ZTest> z_test, tile_test;
+};
+
 struct Comparison {
     uint32_t width = 0, height = 0;
     std::vector<std::string> channels;   // those compared
@@ -45,6 +53,7 @@ struct Comparison {
     size_t nonfinite_image = 0, nonfinite_reference = 0;  // pixels
     std::optional<ZTest> z_test;                          // where both images have an error layer
     std::optional<ZTest> tile_test;                       // the same over tiles of z_tile * z_tile pixels
+    std::optional<StokesComparison> stokes;
 };
 
 // Compares R, G, B where both have them, else all channels but A and the layers of --aovs. Fails with one

@@ -1,7 +1,7 @@
 // An image in memory: named float channels, rows from the top, with the attributes that travel with it.
 //
 // Channel names follow OpenEXR: the image itself is R, G, B; a layer's channels carry its name and a dot, as
-// in albedo.R, normal.X, depth.Z, error.R; those of spectral images are called S0.550,000000nm.
+// in albedo.R, normal.X, depth.Z, error.R, S1.R; those of spectral images are called S0.550,000000nm.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -54,7 +54,7 @@ PixelReading read_pixel(PreviewScene& scene, const glm::uvec2& pixel) {
     spectra.height = (scene.request.height + scene.step - 1) / scene.step;
     scene.renderer.add_spectra(spectra);
     const size_t at = size_t(film.y * spectra.height) * spectra.width + size_t(film.x * spectra.width);
-    for (size_t bin = 0; bin < spectra.channels.size(); ++bin)
+    for (size_t bin = 0; bin < spectra.channels.size() && spectra.channels[bin].starts_with("S0."); ++bin)
         reading.spectrum.push_back(plane(spectra, bin)[at]);
     return reading;
 }

@@ -13,7 +13,8 @@
 namespace etendue {
 
 // What of the film is shown.
-enum class Layer { radiance, error, albedo, normal, depth };
+enum class Layer { radiance, error, albedo, normal, depth, linear, angle, circular };
+constexpr int layer_count = 8;
 const char* layer_name(Layer layer);
 
 struct PreviewRequest {
@@ -41,6 +42,7 @@ struct PreviewPicture {
     std::vector<glm::vec3> radiance;  // rows from the top
     Layer layer = Layer::radiance;
     std::vector<glm::vec3> shown;   // of another layer: relative error, or colours to show as they are
+    std::vector<glm::vec4> stokes;  // S0 to S3, luminances; empty where no receiver asks for them
     std::vector<glm::vec3> errors;  // of the radiance, in its unit; empty until they were asked for
     std::vector<float> depth;       // m along the ray, 0 = nothing is there; empty until it was asked for
     uint64_t passes = 0;

@@ -35,7 +35,14 @@ FilmView film_view(uint32_t receiver, const PreviewRequest& request, uint32_t st
 }  // namespace
 
 const char* layer_name(Layer layer) {
-    constexpr const char* names[] = {"radiance", "error", "albedo", "normal", "depth"};
+    constexpr const char* names[] = {"radiance",
+                                     "error",
+                                     "albedo",
+                                     "normal",
+                                     "depth",
+                                     "degree of linear polarization",
+                                     "angle of linear polarization",
+                                     "circular polarization"};
     return names[int(layer)];
 }
 
@@ -231,6 +238,8 @@ RenderSettings PreviewWorker::settings_for(const Scene& scene, uint32_t receiver
     settings.schedule = options_.schedule;
     settings.vertex_bytes = options_.vertex_bytes;
     settings.spectral_bins = options_.spectral_bins;
+    // A film may go on to show another receiver.
+    for (const Receiver& any : scene.receivers) settings.stokes |= any.stokes;
     return settings;
 }
 

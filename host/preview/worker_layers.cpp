@@ -1,7 +1,8 @@
-// What a picture holds besides radiance: errors, and what the pixels see first.
+// What a picture holds besides radiance: errors, polarization, and what the pixels see first.
 #include <algorithm>
 #include <cmath>
 
+#include "host/image/polarization.h"
 #include "host/preview/worker.h"
 #include "host/spectra/color.h"
 
@@ -21,6 +22,13 @@ std::vector<glm::vec3> read_colors(const Image& image, const std::vector<std::st
     return result;
 }
 
+std::vector<glm::vec4> read_stokes(const Image& image) {
+    std::vector<glm::vec4> result;
+    result.reserve(pixel_count(image));
+    for (size_t i = 0; i < pixel_count(image); ++i) result.push_back(glm::vec4(stokes_at(image, i)));
+    return result;
+}
+
 // As in the relMSE (host/image/compare.h), of luminances.
 std::vector<glm::vec3> relative_errors(const std::vector<glm::vec3>& radiance,
                                        const std::vector<glm::vec3>& errors) {
@@ -30,6 +38,18 @@ std::vector<glm::vec3> relative_errors(const std::vector<glm::vec3>& radiance,
     for (size_t i = 0; i < errors.size(); ++i) {
         const double y = luminance(glm::dvec3(radiance[i])), error = luminance(glm::dvec3(errors[i]));
         result[i] = glm::vec3(float(error / std::sqrt(y * y + 0.01 * mean * mean + 1e-300)));
+    }
+    return result;
+}
+
+// Black where the film has no Stokes vectors.
+std::vector<glm::vec3> polarization_colors(Layer layer, const PreviewPicture& picture) {
+    std::vector<glm::vec3> result(picture.radiance.size(), glm::vec3(0));
+    for (size_t i = 0; i < picture.stokes.size(); ++i) {
+        const PolarizationState state = polarization_state(glm::dvec4(picture.stokes[i]));
+        if (layer == Layer::linear) result[i] = degree_color(state.linear);
+        if (layer == Layer::angle) result[i] = angle_color(state.angle) * std::min(4 * state.linear, 1.0f);
+        if (layer == Layer::circular) result[i] = signed_degree_color(state.circular);
     }
     return result;
 }
@@ -58,6 +78,8 @@ const Image& PreviewWorker::aovs(const PreviewPicture& picture) {
 // Colours to show as they are; relative errors of the error layer.
 std::vector<glm::vec3> PreviewWorker::develop_layer(Layer layer, const PreviewPicture& picture) {
     if (layer == Layer::error) return relative_errors(picture.radiance, errors_);
+    if (layer == Layer::linear || layer == Layer::angle || layer == Layer::circular)
+        return polarization_colors(layer, picture);
     if (layer == Layer::albedo) return read_colors(aovs(picture), {"albedo.R", "albedo.G", "albedo.B"});
     std::vector<glm::vec3> result;
     if (layer == Layer::normal) {
@@ -80,6 +102,7 @@ void PreviewWorker::publish(const PreviewRequest& request) {
     picture->step = step_;
     renderer_->read_picture(picture->radiance);
     picture->layer = request.layer;
+    if (renderer_->is_stokes()) picture->stokes = read_stokes(renderer_->develop(false));
     if (request.layer != Layer::radiance) picture->shown = develop_layer(request.layer, *picture);
     picture->errors = errors_;
     if (request.wants_depth) {

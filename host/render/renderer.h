@@ -115,6 +115,7 @@ class Renderer {
     Image develop(bool errors = true) const { return film_->develop(errors); }
     // The mean radiance alone, developed on the device.
     void read_picture(std::vector<glm::vec3>& picture);
+    bool is_stokes() const { return film_->stokes(); }  // S1 to S3 are developed, too
     // Adds the spectra of a spectral image, if it is one (SpectralFilm::add_to).
     void add_spectra(Image& image) const;
     RelativeError relative_error() const { return film_->relative_error(); }

@@ -1,9 +1,14 @@
-// The scale of false colours: decades of cd/m², or of relative error, along a bar at the window's right side.
+// The scale of false colours along a bar at the window's right side: decades of cd/m² or of relative error,
+// degrees and angles of polarization.
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 
+#include "host/image/polarization.h"
 #include "host/preview/window/panels.h"
 
 namespace etendue {
@@ -23,31 +28,67 @@ ImU32 legend_color(double x) {
     return IM_COL32(bytes[0], bytes[1], bytes[2], 255);
 }
 
+ImU32 screen_color(const glm::vec3& encoded) {
+    return IM_COL32(int(255 * encoded.x + 0.5f), int(255 * encoded.y + 0.5f), int(255 * encoded.z + 0.5f),
+                    255);
+}
+
+// The bar, and labels beside it; places along it run from 0, at its lower end, to 1.
+class Bar {
+  public:
+    Bar(const ViewState& state, const std::function<ImU32(double)>& color, const char* unit)
+        : scale_(state.content_scale),
+          right_(ImGui::GetIO().DisplaySize.x - 80 * scale_),
+          top_(40 * scale_),
+          height_(std::max(0.0f, ImGui::GetIO().DisplaySize.y - 80 * scale_)) {
+        if (height_ == 0) return;
+        constexpr int strips = 64;
+        for (int i = 0; i < strips; ++i)
+            list_->AddRectFilled({right_, top_ + height_ * float(i) / strips},
+                                 {right_ + width(), top_ + height_ * float(i + 1) / strips},
+                                 color(1 - (i + 0.5) / strips));
+        list_->AddText({right_ - 10 * scale_, top_ - 20 * scale_}, IM_COL32_WHITE, unit);
+    }
+    void label(double place, const std::string& text) {
+        if (height_ == 0) return;
+        const float y = top_ + height_ * float(1 - place);
+        list_->AddLine({right_ + width(), y}, {right_ + width() + 5 * scale_, y}, IM_COL32_WHITE, scale_);
+        const ImVec2 at(right_ + width() + 8 * scale_, y - 7 * scale_);
+        list_->AddText({at.x + scale_, at.y + scale_}, IM_COL32_BLACK, text.c_str());
+        list_->AddText(at, IM_COL32_WHITE, text.c_str());
+    }
+
+  private:
+    float width() const { return 16 * scale_; }
+    ImDrawList* list_ = ImGui::GetBackgroundDrawList();
+    float scale_, right_, top_, height_;
+};
+
 }  // namespace
 
 void draw_color_scale(ViewState& state, double lowest, double highest, const char* unit) {
-    const ImVec2 window = ImGui::GetIO().DisplaySize;
-    const float scale = state.content_scale, width = 16 * scale, right = window.x - 80 * scale,
-                top = 40 * scale, height = window.y - 80 * scale;
-    if (height <= 0) return;
-    ImDrawList* list = ImGui::GetBackgroundDrawList();
-    constexpr int strips = 64;
-    for (int i = 0; i < strips; ++i)
-        list->AddRectFilled({right, top + height * float(i) / strips},
-                            {right + width, top + height * float(i + 1) / strips},
-                            legend_color(1 - (i + 0.5) / strips));
+    Bar bar(state, legend_color, unit);
     const double range = std::log10(highest / lowest);
-    const auto label = [&](double value, const std::string& text) {
-        const float y = top + height * float(1 - std::log10(value / lowest) / range);
-        list->AddLine({right + width, y}, {right + width + 5 * scale, y}, IM_COL32_WHITE, scale);
-        const ImVec2 at(right + width + 8 * scale, y - 7 * scale);
-        list->AddText({at.x + scale, at.y + scale}, IM_COL32_BLACK, text.c_str());
-        list->AddText(at, IM_COL32_WHITE, text.c_str());
-    };
     for (int decade = int(std::ceil(std::log10(lowest) - 1e-6));
          decade <= int(std::floor(std::log10(highest) + 1e-6)); ++decade)
-        label(std::pow(10.0, decade), fmt::format("{:g}", std::pow(10.0, decade)));
-    list->AddText({right - 10 * scale, top - 20 * scale}, IM_COL32_WHITE, unit);
+        bar.label((decade - std::log10(lowest)) / range, fmt::format("{:g}", std::pow(10.0, decade)));
+}
+
+void draw_polarization_scale(ViewState& state, Layer layer) {
+    if (layer == Layer::angle) {
+        Bar bar(
+            state, [](double x) { return screen_color(angle_color(x * std::numbers::pi)); }, "angle, °");
+        for (int degrees = 0; degrees <= 180; degrees += 45)
+            bar.label(degrees / 180.0, std::to_string(degrees));
+    } else if (layer == Layer::circular) {
+        Bar bar(
+            state, [](double x) { return screen_color(signed_degree_color(2 * x - 1)); }, "circular");
+        bar.label(1, "1 right"), bar.label(0.5, "0"), bar.label(0, "-1 left");
+    } else {
+        Bar bar(
+            state, [](double x) { return screen_color(degree_color(x)); }, "linear");
+        for (double x : {0.0, 0.25, 0.5, 0.75, 1.0}) bar.label(x, fmt::format("{:g}", x));
+    }
 }
 
 }  // namespace etendue

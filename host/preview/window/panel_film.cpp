@@ -17,7 +17,7 @@ void combo(const char* label, Choice& value, int count, Name name) {
 
 void draw_film_panel(ViewState& state) {
     if (!ImGui::CollapsingHeader("Film", ImGuiTreeNodeFlags_DefaultOpen)) return;
-    combo("layer", state.request.layer, 5, layer_name);
+    combo("layer", state.request.layer, layer_count, layer_name);
     combo("tone curve", state.view.curve, 5, tone_curve_name);
     float exposure = float(state.view.exposure);
     if (ImGui::SliderFloat("exposure", &exposure, -16, 16, "%+.2f")) state.view.exposure = exposure;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "host/image/polarization.h"
 #include "host/preview/window/panels.h"
 #include "host/spectra/color.h"
 
@@ -17,6 +19,12 @@ void draw_values(const PreviewPicture& picture, size_t at) {
         ImGui::Text("error +- %.2g cd/m²", luminance(glm::dvec3(picture.errors[at])));
     else
         ImGui::TextUnformatted("error not known yet");
+    if (at >= picture.stokes.size()) return;
+    const glm::dvec4 s(picture.stokes[at]);
+    const PolarizationState state = polarization_state(s);
+    ImGui::Text("S1 to S3 %.4g %.4g %.4g cd/m²", s[1], s[2], s[3]);
+    ImGui::Text("linear %.3g at %.1f°, circular %.3g", double(state.linear),
+                double(state.angle) * 180 / std::numbers::pi, double(state.circular));
 }
 
 }  // namespace

@@ -85,7 +85,9 @@ void draw_panels(ViewState& state) {
     if (state.help) draw_help(state);
     if (state.picture && state.panels) {
         const ViewSettings shown = shown_settings(state);
-        if (shown.curve == ToneCurve::false_colors)
+        if (state.picture->layer >= Layer::linear)
+            draw_polarization_scale(state, state.picture->layer);
+        else if (shown.curve == ToneCurve::false_colors)
             draw_color_scale(state, shown.lowest, shown.highest,
                              state.picture->layer == Layer::error ? "error / value" : "cd/m²");
     }

@@ -16,5 +16,6 @@ void draw_rays(ViewState& state);  // the lines themselves
 void draw_help(ViewState& state);
 void draw_messages(ViewState& state);
 void draw_color_scale(ViewState& state, double lowest, double highest, const char* unit);
+void draw_polarization_scale(ViewState& state, Layer layer);  // of a layer that shows polarization
 
 }  // namespace etendue
