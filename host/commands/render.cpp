@@ -100,7 +100,7 @@ int render_command(const RenderOptions& given) {
     if (scene.lights == 0)
         show_note(progress, fmt::format("warning: {}: the scene has no light: the image is black",
                                         options.scene.string()));
-    if (receiver.stokes && !scene.features.polarization)
+    if (receiver.wants_stokes && !scene.features.polarization)
         show_note(progress,
                   fmt::format("warning: {} asks for Stokes vectors: without polarization there are none",
                               receiver.name));
@@ -113,7 +113,7 @@ int render_command(const RenderOptions& given) {
     settings.schedule = options.schedule;
     settings.vertex_bytes = options.vertex_bytes;
     settings.spectral_bins = options.spectral_bins;
-    settings.stokes = receiver.stokes;
+    settings.stokes = receiver.wants_stokes;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
     nlohmann::json identity;
     if (!options.checkpoint.empty() || !options.resume.empty())

@@ -79,8 +79,19 @@ const QuantityName quantity_names[] = {{"radiance", EmissionDescription::Quantit
                                        {"power", EmissionDescription::Quantity::power},
                                        {"flux", EmissionDescription::Quantity::flux}};
 
+// "stokes" of light: [1, S1, S2, S3]. Returns S1 to S3.
+glm::dvec3 stokes_value(const JsonAt& object) {
+    const std::optional<JsonAt> at = find(object, "stokes");
+    if (!at) return glm::dvec3(0);
+    const std::vector<double> s = number_array(*at, 4, -1, 1);
+    const glm::dvec3 polarized(s[1], s[2], s[3]);
+    if (s[0] != 1 || glm::length(polarized) > 1 + 1e-6)
+        fail_at(*at, "must be [1, S1, S2, S3] with S1² + S2² + S3² at most 1");
+    return polarized;
+}
+
 EmissionDescription read_emission(const JsonAt& at) {
-    only_members(at, {"radiance", "luminance", "power", "flux", "spectrum"});
+    only_members(at, {"radiance", "luminance", "power", "flux", "spectrum", "stokes"});
     EmissionDescription emission;
     emission.where = at.pointer;
     size_t count = 0;
@@ -93,6 +104,7 @@ EmissionDescription read_emission(const JsonAt& at) {
     if (count != 1)
         fail_at(at, "names {} quantities; must name one of radiance, luminance, power, flux", count);
     if (std::optional<JsonAt> spectrum = find(at, "spectrum")) emission.spectrum = **spectrum;
+    emission.stokes = stokes_value(at);
     return emission;
 }
 
@@ -183,21 +195,29 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
     auto place = [&](const char* key, std::vector<PlacedObject>& objects) {
         std::optional<JsonAt> at = find_object(*optics, key);
         if (!at) return;
-        bool is_geometry = &objects == &import.scene.shapes,
-             is_receiver = &objects == &import.scene.receivers;
-        // A camera of glTF that is a receiver already: what is said here is said of that.
-        if (is_receiver && node->contains("camera") && !(*at)->contains("class")) {
+        const bool is_geometry = &objects == &import.scene.shapes,
+                   is_receiver = &objects == &import.scene.receivers,
+                   is_light = &objects == &import.scene.lights;
+        const bool has_stokes = is_receiver || is_light;
+        const auto read_stokes = [&](PlacedObject& object) {
+            if (is_receiver) object.wants_stokes = boolean(*at, "stokes", false);
+            if (is_light) object.stokes = stokes_value(*at);
+        };
+        // A camera or lamp of glTF has been placed already: what is said here is said of that.
+        const bool is_placed = (is_receiver && node->contains("camera")) ||
+                               (is_light && find_extension(node, "KHR_lights_punctual"));
+        if (is_placed && !(*at)->contains("class")) {
             only_members(*at, {"stokes"});
-            objects.back().stokes = boolean(*at, "stokes", false);
+            read_stokes(objects.back());
             return;
         }
         std::string name = text(node, "name", node.pointer);
         PlacedObject object{name,
-                            is_geometry   ? object_description(import, *at, {"material"})
-                            : is_receiver ? object_description(import, *at, {"stokes"})
-                                          : object_description(import, *at, {}),
+                            is_geometry  ? object_description(import, *at, {"material"})
+                            : has_stokes ? object_description(import, *at, {"stokes"})
+                                         : object_description(import, *at, {}),
                             world_from_local};
-        if (is_receiver) object.stokes = boolean(*at, "stokes", false);
+        read_stokes(object);
         if (is_geometry) {
             auto material = index(*at, "material", array_size(import.root, "materials"), "/materials");
             object.material = material ? *material : default_material(import);

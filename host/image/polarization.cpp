@@ -51,7 +51,7 @@ void add_polarization(Image& image) {
 
 glm::vec3 degree_color(double degree) {
     const float x = float(std::clamp(degree, 0.0, 1.0));
-    return glm::clamp(glm::vec3(1.8f * x, 1.6f * x - 0.5f * (1 - x), 0.9f * x * (1 - x)), 0.0f, 1.0f);
+    return {std::min(1.6f * x, 1.0f), x, 0.5f * x * (1 - x)};
 }
 
 glm::vec3 angle_color(double angle) {

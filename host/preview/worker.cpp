@@ -239,7 +239,7 @@ RenderSettings PreviewWorker::settings_for(const Scene& scene, uint32_t receiver
     settings.vertex_bytes = options_.vertex_bytes;
     settings.spectral_bins = options_.spectral_bins;
     // A film may go on to show another receiver.
-    for (const Receiver& any : scene.receivers) settings.stokes |= any.stokes;
+    for (const Receiver& any : scene.receivers) settings.stokes |= any.wants_stokes;
     return settings;
 }
 

@@ -35,6 +35,7 @@ struct EmissionDescription {
     nlohmann::json value = 0.0;  // a spectral value
     nlohmann::json spectrum;     // a spectral value that multiplies `value`; null = 1
     nlohmann::json texture;      // glTF textureInfo (emissiveTexture), or null
+    glm::dvec3 stokes{0};        // S1 to S3 over S0, x being the node's
     std::string where;
 };
 
@@ -77,8 +78,9 @@ struct PlacedObject {
     std::string name;
     ObjectDescription object;
     glm::dmat4 world_from_local{1.0};
-    uint32_t material = 0;  // geometry only
-    bool stokes = false;    // receivers: S1 to S3 are wanted, too
+    uint32_t material = 0;      // geometry only
+    bool wants_stokes = false;  // receivers: S1 to S3 are wanted, too
+    glm::dvec3 stokes{0};       // lights: S1 to S3 over S0, x being the node's
 };
 
 // 8-bit images keep their bytes; float images (.hdr, .exr) are linear.

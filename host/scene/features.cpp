@@ -41,6 +41,7 @@ std::string Features::defines() const {
     define("SPECTRAL", spectral);
     define("HAS_POLARIZATION", polarization);
     define("HAS_GENERAL_MUELLER", general_mueller);
+    define("HAS_POLARIZED_LIGHTS", polarization && polarized_lights);
     define("HAS_DISPERSION", spectral && dispersion);
     if (spectral) define("SPECTRUM_COUNT", spectrum_count);
     if (spectral) define("COLOR_LATTICE", color_lattice);

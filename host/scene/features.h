@@ -17,15 +17,16 @@ struct Features {
     bool vertex_attributes = false;   // normals, tangents, texture coordinates or colors
     bool normal_maps = false;
     bool textures = false;
-    bool media = false;            // some medium absorbs or scatters
-    bool scattering = false;       // some medium scatters
-    bool even_scattering = false;  // … the same everywhere
-    bool bending = false;          // some medium bends rays
-    bool interfaces = false;       // some surface separates media: paths keep track of where they are
-    uint32_t body_count = 0;       // materials with a priority: paths count the bodies that they are inside
-    bool straight = false;         // some surface lets light pass straight on: shadow rays go through
-    bool spectral = false;         // paths carry wavelengths instead of colours
-    bool polarization = false;     // paths carry Stokes vectors
+    bool media = false;             // some medium absorbs or scatters
+    bool scattering = false;        // some medium scatters
+    bool even_scattering = false;   // … the same everywhere
+    bool bending = false;           // some medium bends rays
+    bool interfaces = false;        // some surface separates media: paths keep track of where they are
+    uint32_t body_count = 0;        // materials with a priority: paths count the bodies that they are inside
+    bool straight = false;          // some surface lets light pass straight on: shadow rays go through
+    bool spectral = false;          // paths carry wavelengths instead of colours
+    bool polarization = false;      // paths carry Stokes vectors
+    bool polarized_lights = false;  // some light is polarized from the start
     bool general_mueller =
         false;                    // a class has matrices that are not of two blocks (shaders/lib/stokes.glsl)
     bool dispersion = false;      // some refractive index depends on the wavelength

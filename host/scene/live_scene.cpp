@@ -133,8 +133,8 @@ bool same_receivers(const SceneObjects& a, const SceneObjects& b) {
     return std::equal(a.receivers.begin(), a.receivers.end(), b.receivers.begin(), b.receivers.end(),
                       [](const PlacedObject& x, const PlacedObject& y) {
                           return x.name == y.name && x.object.class_name == y.object.class_name &&
-                                 x.object.parameters == y.object.parameters && x.stokes == y.stokes &&
-                                 x.world_from_local == y.world_from_local;
+                                 x.object.parameters == y.object.parameters &&
+                                 x.wants_stokes == y.wants_stokes && x.world_from_local == y.world_from_local;
                       });
 }
 

@@ -18,6 +18,11 @@
 
 namespace etendue {
 
+// Twin in shaders/features/polarized_lights.glsl.
+struct LightStokes {
+    glm::vec3 stokes{0}, axis{1, 0, 0};
+};
+
 // Twin of struct SpectrumRef in shaders/features/spectrum.glsl.
 struct SpectrumRef {
     glm::vec3 rgb{0};    // linear Rec.709

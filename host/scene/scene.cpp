@@ -69,7 +69,8 @@ void SceneCompiler::choose_polarization() {
     bool polarizes = false;
     for (const auto& [interface, classes] : out_.classes)
         for (const ClassInfo* info : classes) polarizes |= info->polarizes;
-    for (const Receiver& receiver : out_.receivers) polarizes |= receiver.stokes;
+    polarizes |= out_.features.polarized_lights;
+    for (const Receiver& receiver : out_.receivers) polarizes |= receiver.wants_stokes;
     out_.features.polarization = options_.polarization == PolarizationMode::on ||
                                  (options_.polarization == PolarizationMode::automatic && polarizes);
 }

@@ -87,6 +87,7 @@ class SceneCompiler {
 
     // scene_lights.cpp
     void add_lights();
+    const glm::dmat4& placed_transform(uint32_t index) const;
     void drop_dark_triangles(std::vector<uint32_t>& primitives);
     void measure_lights();
     void name_lights(const std::map<uint32_t, uint32_t>& positions);
@@ -122,6 +123,7 @@ class SceneCompiler {
     std::map<std::string, uint32_t> phases_;                       // RecordRefs, by their places in the scene
     std::vector<uint32_t> lights_;                                 // RecordRefs
     std::vector<std::string> light_names_;                         // in the same order
+    std::vector<LightStokes> light_stokes_;                        // … as well
     uint32_t first_area_light_ = 0;                                // in lights_, before they are sorted
     std::vector<uint32_t> area_primitives_;                        // of each area light
 };

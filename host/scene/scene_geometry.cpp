@@ -114,7 +114,7 @@ void SceneCompiler::add_receivers() {
         const float aspect = object.parameters.value("aspect_ratio", 0.0f);
         object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
         added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local)));
-        out_.receivers.push_back({receiver.name, no_record, aspect, receiver.stokes, added.back().info,
+        out_.receivers.push_back({receiver.name, no_record, aspect, receiver.wants_stokes, added.back().info,
                                   object.parameters, receiver.world_from_local});
     }
     const auto refs = references(Interface::receiver, added);

@@ -21,6 +21,11 @@ std::vector<std::byte> area_record(const ClassInfo& info, uint32_t primitive, ui
     return record;
 }
 
+// `stokes`: S1 to S3 over S0 of light whose x is that of a node.
+LightStokes light_stokes(const glm::dvec3& stokes, const glm::dmat4& world_from_local) {
+    return {glm::vec3(stokes), glm::vec3(glm::normalize(glm::dvec3(world_from_local[0])))};
+}
+
 }  // namespace
 
 // Lights at infinity come first in the list (features/light_selection.glsl).
@@ -34,10 +39,12 @@ void SceneCompiler::add_lights() {
         infinite.push_back(add_record(Interface::light, *in_.environment));
     }
     light_names_.assign(infinite.size(), "environment");
+    light_stokes_.assign(infinite.size(), {});
     for (const PlacedObject& light : in_.lights) {
         const Added added = add_record(Interface::light, light.object, recentred(light.world_from_local));
         finite.push_back(added);  // sorted by what measure_lights finds
         light_names_.push_back(light.name);
+        light_stokes_.push_back(light_stokes(light.stokes, light.world_from_local));
     }
     for (uint32_t i = 0; i < memory_.world.world_primitives; ++i) {
         const PrimitiveRecord& p = memory_.world.primitives[i];
@@ -52,7 +59,11 @@ void SceneCompiler::add_lights() {
         for (uint32_t i : area_primitives_) {
             records_[Interface::light].add(info, area_record(info, i, memory_.world.primitives[i].material));
             area.push_back({&info, uint32_t(area.size())});
-            light_names_.push_back(in_.materials[memory_.world.primitives[i].material].name);
+            const MaterialDescription& material = in_.materials[memory_.world.primitives[i].material];
+            light_names_.push_back(material.name);
+            light_stokes_.push_back(
+                light_stokes(material.emission ? material.emission->stokes : glm::dvec3(0),
+                             placed_transform(out_.placed->at(i))));
         }
     }
     std::vector<Added> all = infinite;
@@ -66,6 +77,12 @@ void SceneCompiler::add_lights() {
     out_.features.scene_radius = options_.varying.count("places") && out_.radius > 0
                                      ? std::exp2(std::ceil(4 * std::log2(out_.radius)) / 4)
                                      : out_.radius;
+}
+
+// Of what `placed` counts: instances of meshes, then shapes.
+const glm::dmat4& SceneCompiler::placed_transform(uint32_t index) const {
+    return index < in_.instances.size() ? in_.instances[index].world_from_local
+                                        : in_.shapes.at(index - in_.instances.size()).world_from_local;
 }
 
 // Triangles that an emissive texture leaves dark are no lights.
@@ -121,12 +138,15 @@ void SceneCompiler::measure_lights() {
     for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return is_at_infinity(bounds[i]); });
     std::vector<uint32_t> sorted_lights;
+    std::vector<LightStokes> sorted_stokes;
     std::vector<LightBounds> sorted_bounds;
     std::vector<double> powers;
     std::map<uint32_t, uint32_t> positions;
     for (uint32_t position = 0; position < order.size(); ++position) {
         const uint32_t i = order[position];
         sorted_lights.push_back(lights_[i]);
+        sorted_stokes.push_back(light_stokes_[i]);
+        out_.features.polarized_lights |= light_stokes_[i].stokes != glm::vec3(0);
         out_.light_names.push_back(light_names_[i]);
         out_.light_shapes.push_back(
             i < first_area_light_
@@ -141,6 +161,7 @@ void SceneCompiler::measure_lights() {
     out_.features.light_tree = tree.is_tree;
     out_.features.infinite_light_count = tree.infinite_count;
     upload("Lights", sorted_lights);
+    upload("LightStokesTable", sorted_stokes);
     upload("LightNodes", tree.nodes);
     upload("LightTrails", tree.trails);
     upload("LightEmission", build_emission_choices(powers));

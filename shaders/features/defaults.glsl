@@ -76,6 +76,9 @@
 #ifndef HAS_GENERAL_MUELLER
 #define HAS_GENERAL_MUELLER 0
 #endif
+#ifndef HAS_POLARIZED_LIGHTS
+#define HAS_POLARIZED_LIGHTS 0
+#endif
 #ifndef HAS_DISPERSION
 #define HAS_DISPERSION 0
 #endif
@@ -92,8 +95,8 @@
 #define SPECTRAL_BINS 0
 #endif
 
-// Shadow rays may end at forward vertices, whose light is polarized.
-#if HAS_POLARIZATION && CONNECT_VERTICES
+// Shadow rays may end at forward vertices or lights, whose light is polarized.
+#if HAS_POLARIZATION && !FORWARD && (CONNECT_VERTICES || HAS_POLARIZED_LIGHTS)
 #define HAS_POLARIZED_ENDS 1
 #else
 #define HAS_POLARIZED_ENDS 0

@@ -4,6 +4,7 @@
 // are; an event takes or gives up to twice of what it does to unpolarized light.
 //
 // Rows and vectors meet where paths do (Mojzík et al. 2016, "Bi-directional Polarised Light Transport").
+#include "features/polarized_lights.glsl"
 #include "features/stokes_images.glsl"
 #include "interfaces/receiver.glsl"
 #include "lib/forward_pass.glsl"
@@ -48,8 +49,8 @@ Carried turned(Carried c, vec2 angle) {
 Received meet(Carried c, Polarization light) {
     return Stokes(meet(c.first, light), meet(c.others[0], light), meet(c.others[1], light), meet(c.others[2], light));
 }
-// The rows of a receiver, in the frame of the light that comes against `direction`.
-void start_polarization(inout Path path, uint receiver) {
+// The rows of a receiver, in the frame of the light that comes against the ray.
+void start_rows(inout Path path, uint receiver) {
     path.polarization.first = unpolarized();
     vec2 angle = double_angle(receiver_stokes_axis(receiver, path.direction), stokes_axis(-path.direction), -path.direction);
     for (int i = 0; i < 3; ++i) {
@@ -59,8 +60,9 @@ void start_polarization(inout Path path, uint receiver) {
     }
 }
 #else
-void start_polarization(inout Path path, uint receiver) { path.polarization = unpolarized(); }
+#define start_rows(path, receiver) path.polarization = unpolarized()
 #endif
+#define start_stokes(path, light) path.polarization = light_polarization(light, path.direction)
 
 // A path comes to s along its direction and leaves along another.
 void polarize(inout Path path, ScatteringPoint s, Mueller m, vec3 leaving) {
@@ -126,26 +128,31 @@ Received merged_light(Spectrum brought, Path path, ScatteringPoint s, Mueller m,
 }
 #endif
 
-#if CONNECT_VERTICES
+#if CONNECT_VERTICES && !FORWARD
 // The light of y goes on at `there` to the end of a shadow ray, where it meets the row that has come along that.
 void polarize_end(inout ShadowRay shadow, LightVertex y, ScatteringPoint there, Mueller m) {
     shadow.end = polarization_of(y);
     vec3 arriving = -decode_octahedral(y.direction);
     shadow.contribution *= through_event(shadow.end, m, event_frames(there, m, arriving, -shadow.direction));
 }
-void end_unpolarized(inout ShadowRay shadow) { shadow.end = unpolarized(); }
+#endif
+#if HAS_POLARIZED_ENDS
+// … to which a light sends it.
+void end_at_light(inout ShadowRay shadow, uint light) { shadow.end = light_polarization(light, -shadow.direction); }
 #else
-#define end_unpolarized(shadow)
+#define end_at_light(shadow, light)
 #endif
 
 // What reaches the receiver of light that a backward path comes to, or a shadow ray has passed on to its end: `brought`, if it is not
 // polarized.
-#if STOKES_IMAGE && !FORWARD
-Received seen_light(Path path, Spectrum brought) { return scaled(meet(path.polarization, unpolarized()), brought); }
+#if (STOKES_IMAGE || HAS_POLARIZED_LIGHTS) && !FORWARD
+Received seen_light(Path path, Spectrum brought, uint light) {
+    return scaled(meet(path.polarization, light_polarization(light, -path.direction)), brought);
+}
 #else
-#define seen_light(path, brought) brought
+#define seen_light(path, brought, light) brought
 #endif
-#if HAS_POLARIZED_ENDS && !FORWARD
+#if HAS_POLARIZED_ENDS
 #define analysed(shadow, brought) scaled(meet(shadow.polarization, shadow.end), brought)
 #elif STOKES_IMAGE && FORWARD
 Received analysed(ShadowRay shadow, Spectrum brought) {
@@ -160,7 +167,8 @@ Received analysed(ShadowRay shadow, Spectrum brought) {
 #endif
 
 #else
-#define start_polarization(path, receiver)
+#define start_rows(path, receiver)
+#define start_stokes(path, light)
 #define polarize(path, s, mueller, leaving)
 #define polarize_shadow(shadow, path, s, mueller)
 #define polarize_passage(shadow, s)
@@ -168,7 +176,7 @@ Received analysed(ShadowRay shadow, Spectrum brought) {
 #define keep_polarization(v, path)
 #define merged_light(brought, path, s, mueller, y) brought
 #define polarize_end(shadow, y, there, mueller)
-#define end_unpolarized(shadow)
-#define seen_light(path, brought) brought
+#define end_at_light(shadow, light)
+#define seen_light(path, brought, light) brought
 #define analysed(shadow, brought) brought
 #endif

@@ -28,7 +28,6 @@ ShadowRay shadow_ray(Path path, SurfacePoint p, ScatteringPoint s, Scattering pa
     shadow.around = surroundings_towards(s, direction);
     if (bends_rays(shadow.around.medium)) shadow.t_max = 0.0;
     polarize_shadow(shadow, path, s, pair.mueller);
-    end_unpolarized(shadow);
     weigh(shadow, others);
     weigh_apart(shadow, 0.0);
     return shadow;

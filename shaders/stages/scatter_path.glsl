@@ -19,7 +19,7 @@ Received collect_light(Path path, uint light, LightHit hit) {
         if (sampling > 0.0) sampling *= light_selection_probability(light, path.reference);
         others = others_of_hit(path, light, hit, sampling);
     }
-    return seen_light(path, path.throughput * radiance * mis_weight(others));
+    return seen_light(path, path.throughput * radiance * mis_weight(others), light);
 }
 
 // The same of the primitive that is met, or of all that surrounds the scene.
@@ -53,7 +53,10 @@ LightSample sample_light(inout Sampler random, vec3 position, out uint light) {
 ShadowRay connect_light(Path path, SurfacePoint p, ScatteringPoint s, LightSample l, uint light, Scattering pair, VertexMis mis) {
     if (!(l.pdf > 0.0) || is_black(l.radiance) || is_black(pair.value)) return no_shadow_ray();
     float others = others_of_light_sample(path, s, l, light, pair, mis);
-    return shadow_ray(path, p, s, pair, l.direction, l.distance, path.throughput * pair.value * l.radiance / l.pdf, others);
+    ShadowRay shadow =
+        shadow_ray(path, p, s, pair, l.direction, l.distance, path.throughput * pair.value * l.radiance / l.pdf, others);
+    end_at_light(shadow, light);
+    return shadow;
 }
 
 // Returns whether the path goes on; the shadow rays are to be traced in either case.

@@ -56,6 +56,32 @@ TEST_CASE("relMSE, RMSE and bias are those of the formulas") {
     CHECK(c.channel_bias[1] == 0);
 }
 
+TEST_CASE("Stokes vectors are compared in units of the mean intensity") {
+    const auto with = [](float s0, float s1, float error) {
+        Image image = rgb(2, 2, std::vector<float>(12, s0));
+        for (const char* layer : {"S1.", "S2.", "S3."}) {
+            const std::string name = layer;
+            const float value = name == "S1." ? s1 : 0.25f;
+            add_channels(image, {name + "R", name + "G", name + "B"}, std::vector<float>(12, value), 3);
+            add_channels(image, {"error." + name + "R", "error." + name + "G", "error." + name + "B"},
+                         std::vector<float>(12, error), 3);
+        }
+        return image;
+    };
+    const Comparison c = compare_images(with(2, 0.5f, 0.1f), with(2, 0.3f, 0.1f));
+    CHECK(c.channels.size() == 3);
+    CHECK(c.relmse == 0);
+    REQUIRE(c.stokes);
+    CHECK(c.stokes->rms[0] == doctest::Approx(0.1));
+    CHECK(c.stokes->bias[0] == doctest::Approx(0.1));
+    CHECK(c.stokes->rms[1] == 0);
+    REQUIRE(c.stokes->z_test);
+    CHECK(c.stokes->z_test->max_z == doctest::Approx(std::sqrt(2.0)));
+    CHECK(c.stokes->z_test->passes);
+    CHECK(!compare_images(with(2, 0.5f, 0.01f), with(2, 0.3f, 0.01f)).stokes->z_test->passes);
+    CHECK(!compare_images(rgb(1, 1, {1, 1, 1}), rgb(1, 1, {1, 1, 1})).stokes);
+}
+
 TEST_CASE("the worst pixels come worst first with their place and values") {
     std::vector<float> values(3 * 12, 1.0f), changed = values;
     changed[3 * 7 + 1] = 2.0f;

@@ -91,6 +91,29 @@ TEST_CASE("a perspective camera becomes a receiver, its node's scale ignored") {
     CHECK(r.world_from_local == glm::dmat4(1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1));
 }
 
+TEST_CASE("cameras ask for Stokes vectors, lights and emission have them") {
+    const nlohmann::json perspective = {{"type", "perspective"},
+                                        {"perspective", {{"yfov", 0.8}, {"znear", 0.1}}}};
+    const auto optics = [](nlohmann::json value) { return nlohmann::json{{"ETD_optics", std::move(value)}}; };
+    GltfBuilder b;
+    b.document["extensionsUsed"] = {"ETD_optics"};
+    b.document["cameras"] = {perspective};
+    b.node({{"camera", 0}, {"extensions", optics({{"receiver", {{"stokes", true}}}})}});
+    b.node({{"extensions", optics({{"receiver", {{"class", "perspective"}, {"stokes", true}}}})}});
+    b.node({{"extensions", optics({{"receiver", {{"class", "perspective"}}}})}});
+    b.node({{"extensions", optics({{"light", {{"class", "point"}, {"stokes", {1, 0.6, 0, -0.8}}}}})}});
+    b.document["materials"] = {
+        {{"extensions", optics({{"emission", {{"radiance", 1}, {"stokes", {1, 0, 0.5, 0}}}}})}}};
+    const SceneDescription s = b.import();
+    REQUIRE(s.receivers.size() == 3);
+    CHECK(s.receivers[0].wants_stokes);
+    CHECK(s.receivers[1].wants_stokes);
+    CHECK(!s.receivers[2].wants_stokes);
+    CHECK(!s.receivers[1].object.parameters.contains("stokes"));
+    CHECK(s.lights.at(0).stokes == glm::dvec3(0.6, 0, -0.8));
+    CHECK(s.materials.at(0).emission->stokes == glm::dvec3(0, 0.5, 0));
+}
+
 TEST_CASE("an orthographic camera becomes a receiver with ymag") {
     GltfBuilder b;
     b.document["cameras"] = {

@@ -172,6 +172,37 @@ TEST_CASE("layers: errors are known after some passes, normals point to the came
     CHECK(albedo.y == doctest::Approx(0.7).epsilon(0.05));
 }
 
+TEST_CASE("layers of polarization, where a camera asks for Stokes vectors") {
+    Viewed plain;
+    plain.request.layer = Layer::linear;
+    CHECK(plain.rest().stokes.empty());
+    std::string text = two_balls;
+    const std::string camera = R"({"name": "front", "camera": 0,)";
+    text.replace(text.find(camera), camera.size(),
+                 camera + R"( "extensions": {"ETD_optics": {"receiver": {"stokes": true}}},)");
+    const std::string paint = R"({"class": "lambertian", "reflectance": [0.1, 0.7, 0.1]})";
+    text.replace(text.find(paint), paint.size(),
+                 R"({"class": "conductor", "eta": 0.2, "k": 3.4, "alpha": 0.3})");
+    Viewed viewed(text);
+    viewed.request.layer = Layer::linear;
+    const PreviewPicture& picture = viewed.rest();
+    REQUIRE(picture.stokes.size() == picture.radiance.size());
+    CHECK(picture.shown.size() == picture.radiance.size());
+    const glm::vec4 sky = picture.stokes[0];
+    CHECK(sky.x == doctest::Approx(1).epsilon(1e-3));
+    CHECK(std::abs(sky.y) + std::abs(sky.z) + std::abs(sky.w) == 0);
+    float most = 0;
+    for (const glm::vec4& s : picture.stokes) {
+        CHECK(glm::length(glm::vec3(s.y, s.z, s.w)) <= s.x * 1.0001f);
+        most = std::max(most, std::hypot(s.y, s.z) / s.x);
+    }
+    CHECK(most > 0.005f);  // light at the rim of the metal
+    for (const Layer layer : {Layer::angle, Layer::circular}) {
+        viewed.request.layer = layer;
+        CHECK(viewed.rest().shown.size() == 64 * 48);
+    }
+}
+
 TEST_CASE("a pixel tells what it sees, and its spectrum where the film has bins") {
     Viewed viewed(two_balls, 10);
     viewed.rest();

@@ -319,6 +319,41 @@ TEST_CASE("a Stokes camera sees what sheets make") {
                   sign * c * std::cos(157.224604 * degree), sign * c * std::sin(157.224604 * degree)});
 }
 
+TEST_CASE("polarized lights") {
+    const dvec4 state(1, 0.6, 0.3, -0.5);
+    const auto turned = [&](double a) {
+        const double c = std::cos(2 * a), s = std::sin(2 * a);
+        return dvec4(1, c * state[1] - s * state[2], s * state[1] + c * state[2], state[3]);
+    };
+    // Seen directly: a surface whose node is turned about the view.
+    for (double a : {0.0, 30 * degree}) {
+        SceneBuilder s;
+        s.perspective(1e-3, at(0, 0, 0));
+        const int lamp = s.material({{"surface", {{"class", "absorber"}}},
+                                     {"emission", {{"radiance", 1}, {"stokes", {1, 0.6, 0.3, -0.5}}}}});
+        s.rectangle(0.4, 0.4, lamp, {{0, 0, -1}, {0, 0, std::sin(a / 2), std::cos(a / 2)}});
+        for (Algorithm algorithm : {Algorithm::backward, Algorithm::bidirectional})
+            check_stokes(seen_stokes(s, algorithm), turned(a));
+    }
+}
+
+TEST_CASE("polarized lights among metals: all algorithms agree") {
+    SceneBuilder s;
+    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
+    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
+    s.perspective(1.2, at(0, 0, 1.95));
+    s.rectangle(1.5, 1.5,
+                s.material({{"surface", {{"class", "absorber"}}},
+                            {"emission", {{"radiance", 2}, {"stokes", {1, 0.2, 0.4, 0.8}}}}}),
+                hanging(0, 1.95, 0));
+    s.placed("light", {{"class", "spot"}, {"intensity", 5}, {"stokes", {1, -0.8, 0, -0.6}}}, at(0.5, 0.5, 1));
+    Comparison c;
+    c.backward = 64, c.forward = 48, c.bidirectional = 32;
+    c.largest_error = 0.015;
+    c.stokes = true;
+    check_against_backward(s, c);
+}
+
 // What is measured turns against the camera: S0 and S3 stay, S1 and S2 turn by twice the angle. Mirrored, the
 // scene shows S2 and S3 of the other sign.
 TEST_CASE("turned cameras and mirrored scenes") {

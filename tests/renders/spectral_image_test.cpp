@@ -105,6 +105,30 @@ TEST_CASE("a lamp has its spectrum in a spectral image, and the luminance that b
     }
 }
 
+TEST_CASE("a spectral image of Stokes vectors: bins of S1 to S3 are those of the light") {
+    SceneBuilder s;
+    s.rectangle(
+        4, 4,
+        s.material({{"surface", {{"class", "absorber"}}},
+                    {"emission", {{"radiance", {{"illuminant", "A"}}}, {"stokes", {1, 0.5, -0.25, 0.75}}}}}),
+        at(0, 0, 0));
+    s.orthographic(1, at(0, 0, 1));
+    Scene scene = compile_test_scene(s.import());
+    RenderSettings settings = settings_of(scene, 2, 2, Algorithm::backward);
+    settings.stokes = true;
+    Renderer renderer(test_device(), scene, settings);
+    renderer.render_passes(64);
+    const Image image = develop(renderer);
+    CHECK(std::get<std::string>(image.attributes.at("polarisationHandedness")) == "right");
+    const double expected[] = {1, 0.5, -0.25, 0.75};
+    for (uint32_t bin = 0; bin < bins; ++bin)
+        for (uint32_t k = 1; k < 4; ++k)
+            for (size_t pixel = 0; pixel < 4; ++pixel)
+                CHECK(channel(image, spectral_channel(bin, bins, k))[pixel] ==
+                      doctest::Approx(expected[k] * channel(image, spectral_channel(bin, bins))[pixel])
+                          .epsilon(1e-5));
+}
+
 TEST_CASE("forward, bidirectional and backward rays give the same spectral image, in every schedule") {
     Scene scene = compile_test_scene(painted_floor().import());
     const auto render = [&](Algorithm algorithm, Schedule schedule) {
