@@ -14,6 +14,7 @@ namespace {
 using nlohmann::json;
 
 json array(const glm::vec4& v) { return {v.x, v.y, v.z, v.w}; }
+json array(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 
 std::string as_json(const std::vector<RecordedPath>& paths) {
     json list = json::array();
@@ -27,6 +28,9 @@ std::string as_json(const std::vector<RecordedPath>& paths) {
                                 {"leaving", v.leaving},
                                 {"throughput", array(v.throughput)}});
             if (!v.shape.empty()) vertices.back()["shape"] = v.shape;
+            if (v.polarization)
+                vertices.back()["polarization"] = {{"stokes", array(v.polarization->stokes)},
+                                                   {"x", array(v.polarization->axis)}};
             if (v.smooth) vertices.back()["smooth"] = true;
             if (v.roulette) vertices.back()["ended_by_roulette"] = true;
         }
@@ -50,15 +54,20 @@ std::string quoted(const std::string& text) {
 }
 
 std::string as_csv(const std::vector<RecordedPath>& paths) {
-    std::string text = "path,vertex,event,object,shape,x,y,z,arriving,leaving,wavelength\n";
+    std::string text = "path,vertex,event,object,shape,x,y,z,arriving,leaving,wavelength,s1,s2,s3\n";
     for (size_t p = 0; p < paths.size(); ++p)
         for (size_t i = 0; i < paths[p].vertices.size(); ++i) {
             const PathVertex& v = paths[p].vertices[i];
             const double nm = wavelength_at(paths[p], v);
-            text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.7g},{}\n", p, i,
+            std::string stokes = ",,";
+            if (v.polarization) {
+                const glm::vec3& s = v.polarization->stokes;
+                stokes = fmt::format("{:.6g},{:.6g},{:.6g}", s.x, s.y, s.z);
+            }
+            text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{:.9g},{:.7g},{:.7g},{},{}\n", p, i,
                                 event_name(v.event), quoted(v.object), quoted(v.shape), v.position.x,
                                 v.position.y, v.position.z, v.arriving, v.leaving,
-                                nm > 0 ? fmt::format("{:.7g}", nm) : "");
+                                nm > 0 ? fmt::format("{:.7g}", nm) : "", stokes);
         }
     return text;
 }

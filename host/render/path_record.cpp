@@ -19,8 +19,9 @@ struct DeviceVertex {
     float arriving, leaving;
     glm::vec3 rgb;
     glm::vec4 throughput;
+    glm::vec3 stokes, axis;
 };
-static_assert(sizeof(DeviceVertex) == 68);
+static_assert(sizeof(DeviceVertex) == 92);
 
 namespace {
 
@@ -151,6 +152,8 @@ PathVertex PathRecorder::vertex_of(const DeviceVertex& v, double unit) const {
     vertex.arriving = unit * v.arriving, vertex.leaving = unit * v.leaving;
     vertex.throughput = v.throughput;
     vertex.color = float(unit) * v.rgb;
+    if (scene_.features.polarization && vertex.leaving > 0)
+        vertex.polarization = PathPolarization{v.stokes, v.axis};
     return vertex;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -24,6 +25,12 @@ enum class PathEvent {
 };
 const char* event_name(PathEvent event);
 
+// S1 to S3 over S0, the mean of the wavelengths as the eye weighs them: of the light that a forward path
+// carries, of the row of an intensity that a backward path is (shaders/features/polarization.glsl).
+struct PathPolarization {
+    glm::vec3 stokes{0}, axis{1, 0, 0};  // axis: x of their frame, z being the way the light travels
+};
+
 struct PathVertex {
     PathEvent event = PathEvent::emitted;
     bool smooth = false;     // reflected or refracted in one direction only
@@ -35,8 +42,9 @@ struct PathVertex {
     // radiance along the ray that reaches the pixel.
     double arriving = 0, leaving = 0;
     glm::vec4 throughput{
-        0};              // … when it goes on, of each wavelength, or of linear R, G, B; in units of its own
-    glm::vec3 color{0};  // … as linear Rec.709 of the same sum as `leaving`
+        0};  // … when it goes on, of each wavelength, or of linear R, G, B; in units of its own
+    std::optional<PathPolarization> polarization;  // … where paths carry any
+    glm::vec3 color{0};                            // … as linear Rec.709 of the same sum as `leaving`
 };
 
 struct RecordedPath {

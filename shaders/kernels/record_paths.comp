@@ -31,6 +31,7 @@ struct DeviceVertex {
     float arriving, leaving;       // luminance of what the path carries
     vec3 rgb;                      // … its colour behind the event
     vec4 throughput;               // … lane by lane
+    vec3 stokes, axis;             // … its polarization
 };
 layout(scalar, set = 0) readonly buffer PathIndices { uint path_indices[]; };
 layout(scalar, set = 0) writeonly buffer PathVertices { DeviceVertex path_vertices[]; };
@@ -57,8 +58,11 @@ void main() {
     uint light = NO_RECORD;
 #endif
     float carried = luminance(path.throughput);
-    path_vertices[i * room] = DeviceVertex(path.origin, RECORDED_EMISSION, NO_RECORD, light, path.around.medium, NO_RECORD, carried,
-                                           carried, spectrum_rgb(path.throughput), all_lanes(path.throughput));
+    vec3 stokes, axis;
+    recorded_polarization(path, stokes, axis);
+    path_vertices[i * room] =
+        DeviceVertex(path.origin, RECORDED_EMISSION, NO_RECORD, light, path.around.medium, NO_RECORD, carried, carried,
+                     spectrum_rgb(path.throughput), all_lanes(path.throughput), stokes, axis);
     path_counts[i] = 1u;
     Counters counters;
     bool alive = !is_black(path.throughput);
@@ -93,6 +97,7 @@ void main() {
         v.arriving = recorded_event.happened ? recorded_event.arriving : v.leaving;
         v.rgb = spectrum_rgb(path.throughput);
         v.throughput = all_lanes(path.throughput);
+        recorded_polarization(path, v.stokes, v.axis);
         path_vertices[i * room + n] = v;
         path_counts[i] = ++n;
         drawn = path.direction;

@@ -41,6 +41,7 @@ TEST_CASE("paths are written as JSON, as a table and as lines of glTF") {
     CHECK(kept("--objects") + kept("--without") == 200);
     REQUIRE(with({"r.csv"}).code == 0);
     const std::string table = read_text(program.folder / "r.csv");
+    CHECK(table.starts_with("path,vertex,event,object,shape,x,y,z,arriving,leaving,wavelength,s1,s2,s3\n"));
     CHECK(size_t(std::count(table.begin(), table.end(), '\n')) == vertices + 1);
     REQUIRE(with({"r.glb"}).code == 0);
     const std::string lines = read_text(program.folder / "r.glb");

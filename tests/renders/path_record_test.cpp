@@ -247,6 +247,37 @@ TEST_CASE("paths are those that the renderer traces") {
     }
 }
 
+TEST_CASE("recorded paths tell how what they carry is polarized") {
+    SceneBuilder s;
+    s.orthographic(1, at(0, 0, 3));
+    s.placed("light", {{"class", "spot"}, {"outer_cone_angle", 0.2}, {"stokes", {1, 0.6, 0, -0.3}}},
+             at(0, 0, 2));
+    const double turn = 0.4;
+    s.rectangle(2, 2, s.surface({{"class", "linear_polarizer"}, {"axis", turn}}), at(0, 0, 1));
+    s.rectangle(2, 2, s.lambertian(0.5), at(0, 0, 0));
+    Scene scene = compile_test_scene(s.import());
+    const RenderSettings settings = settings_for(scene, 8, 8);
+    size_t met = 0;
+    for (const RecordedPath& path : record_all(scene, settings, true)) {
+        const auto& v = path.vertices;
+        REQUIRE(v.size() >= 2);
+        REQUIRE(v[0].polarization);
+        CHECK(glm::length(v[0].polarization->stokes) ==
+              doctest::Approx(std::sqrt(0.36 + 0.09)).epsilon(1e-4));
+        CHECK(v[0].polarization->stokes.z == doctest::Approx(-0.3).epsilon(1e-4));
+        if (v[1].event != PathEvent::straight || !v[1].polarization) continue;
+        // Linear along the sheet's axis, as the light sees it.
+        const glm::dvec3 d = glm::normalize(v[1].position - v[0].position), x = v[1].polarization->axis;
+        const glm::dvec3 sheet(std::cos(turn), std::sin(turn), 0), across = glm::cross(d, x);
+        const double angle = std::atan2(glm::dot(sheet, across), glm::dot(sheet, x));
+        CHECK(v[1].polarization->stokes.x == doctest::Approx(std::cos(2 * angle)).epsilon(0.02));
+        CHECK(v[1].polarization->stokes.y == doctest::Approx(std::sin(2 * angle)).epsilon(0.02));
+        CHECK(std::fabs(glm::length(v[1].polarization->stokes) - 1) < 1e-4);
+        ++met;
+    }
+    CHECK(met > 20);
+}
+
 TEST_CASE("a pixel's path meets first what the layers of the image say") {
     SceneBuilder s = ball_and_lamp();
     Scene scene = compile_test_scene(s.import());
