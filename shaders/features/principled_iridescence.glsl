@@ -58,7 +58,22 @@ void reflect_by_film(PrincipledFilm film, vec3 parts, bool thin, float near, flo
         }
     }
 }
+// What a film on the facets, of metal for this part, does to the polarization of what they reflect or let through.
+Mueller polarize_by_film(PrincipledFilm film, Mueller m, Spectrum metal, bool thin, float near, float eta, float cos_o, bool reflects) {
+    if (!(film.part > 0.0)) return m;
+    bool solid = !reflects && !thin;
+    Spectrum base = solid ? Spectrum(near * eta) : film.dielectric_index;
+    for (int i = 0; i < 2; ++i) {  // a loop, so that the code stands once
+        bool of_metal = i == 1;
+        if (of_metal && is_black(metal)) break;
+        Mueller with_film = thin_film_mueller(m.from, cos_o, solid ? near : 1.0, Spectrum(film.index), film.thickness,
+                                              of_metal ? film.metal_index : base, Spectrum(0), reflects);
+        m = mixed(m, with_film, film.part * (of_metal ? metal : Spectrum(1)));
+    }
+    return m;
+}
 #else
+#define polarize_by_film(film, m, metal, thin, near, eta, cos_o, reflects) m
 #define principled_film(r, f0, color) PrincipledFilm(0.0, 1.0, 0.0, Spectrum(1), Spectrum(1))
 #define bound_film(film, f90, mu, widest, bound, average)
 #define reflect_by_film(film, parts, thin, near, eta, f90, cos_o, metal, opaque, transmitter, passes)

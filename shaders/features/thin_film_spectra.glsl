@@ -1,5 +1,6 @@
 // What a thin film reflects (lib/thin_film.glsl) of the wavelengths of a path, or of its colour.
 #include "features/spectrum.glsl"
+#include "lib/stokes.glsl"
 #include "lib/thin_film.glsl"
 
 #if SPECTRAL
@@ -13,6 +14,18 @@ Spectrum thin_film_reflectance(float cos_o, float n, Spectrum film, float thickn
         result = mix(result, Spectrum(r), equal(uvec4(i), uvec4(0, 1, 2, 3)));
     }
     return result;
+}
+
+// Sums of film_moments(): |s|², |p|², and both parts of p conj(s).
+void thin_film_moments(float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k, bool reflects, out Spectrum m[4]) {
+    vec4 nm = wavelengths[batch_pass].nm;
+    uint count = nm.x > 0.0 ? 4u : 0u;  // as above
+    m[0] = m[1] = m[2] = m[3] = Spectrum(0);
+    for (uint i = 0u; i < count; ++i) {
+        vec4 moments = film_moments(film_stack(cos_o, n, film[i], thickness, vec2(eta[i], k[i]), nm[i]), reflects, 0.0);
+        vec4 lane = mix(vec4(0), vec4(1), equal(uvec4(i), uvec4(0, 1, 2, 3)));
+        for (int j = 0; j < 4; ++j) m[j] += lane * moments[j];
+    }
 }
 
 #else
@@ -44,4 +57,28 @@ Spectrum thin_film_reflectance(float cos_o, float n, Spectrum film, float thickn
     }
     return clamp(sum, vec3(0), vec3(1));
 }
+
+void thin_film_moments(float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k, bool reflects, out Spectrum m[4]) {
+    m[0] = m[1] = m[2] = m[3] = Spectrum(0);
+    for (uint i = 0u; i < FILM_BANDS; ++i) {
+        float wavenumber = 1.0 / 0.710 + (float(i) + 0.5) * FILM_BAND_WIDTH;
+        float nm = 1000.0 / wavenumber;
+        vec2 base = vec2(film_value_at(eta, nm), film_value_at(k, nm));
+        FilmStack stack = film_stack(cos_o, n, film_value_at(film, nm), thickness, base, nm);
+        vec4 moments = film_moments(stack, reflects, FILM_BAND_WIDTH / wavenumber);
+        for (int j = 0; j < 4; ++j) m[j] += FILM_BAND_WEIGHTS[i] * moments[j];
+    }
+}
 #endif
+
+// What a film does to polarization; `axis`: across the plane of incidence. Channels have negative weights for some wavelengths: what
+// would be more polarization than light is cut.
+Mueller thin_film_mueller(vec3 axis, float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k, bool reflects) {
+    Spectrum m[4];
+    thin_film_moments(max(cos_o, 0.0), n, film, thickness, eta, k, reflects, m);
+    Spectrum inverse = 1.0 / max(m[0] + m[1], Spectrum(1e-30));
+    Spectrum b = clamp((m[0] - m[1]) * inverse, Spectrum(-1), Spectrum(1));
+    Spectrum c = 2.0 * m[2] * inverse, d = 2.0 * m[3] * inverse;
+    Spectrum most = max(1.0 - b * b, Spectrum(0)), kept = min(sqrt(most / max(c * c + d * d, Spectrum(1e-30))), Spectrum(1));
+    return phase_plate(axis, b, c * kept, d * kept);
+}

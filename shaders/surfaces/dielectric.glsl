@@ -122,7 +122,7 @@ Mueller dielectric_mueller(Dielectric r, SurfaceContext c, vec3 from, vec3 to, u
     if (eta == 1.0) return passing(vec3(to.xy, to.z * side));
     vec3 h = vec3(0, 0, 1);
     if (!smooth_surface) h = reflects ? reflection_normal(from, to) : refraction_normal(from, to, eta);
-    float cosine = dot(from, h);
+    float cosine = abs(dot(from, h));  // rounding decides on which side upright facets face
     h.z *= side, to.z *= side;
     Mueller m = fresnel_dielectric_mueller(facet_axis(to, h), cosine, eta, reflects);
     if (!r.multiscatter || smooth_surface) return m;

@@ -166,7 +166,7 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
 }
 
 // Facets and coat polarize by Fresnel's equations about the half vector, metals as mirrors that keep s and p alike (a colour says no
-// more of them); what the body and the sheen scatter is depolarized. Films and thin walls are taken as single faces.
+// more of them), films with interference; what the body and the sheen scatter is depolarized. Thin walls are taken as single faces.
 Mueller principled_mueller(Principled r, SurfaceContext c, vec3 from, vec3 to, uint event) {
     if ((event & EVENT_STRAIGHT) != 0u) return passing(to);
     float side = from.z < 0.0 ? -1.0 : 1.0;
@@ -179,15 +179,18 @@ Mueller principled_mueller(Principled r, SurfaceContext c, vec3 from, vec3 to, u
     vec3 h = vec3(0, 0, 1);
     if (reflects || m.thin) h = reflection_normal(o, mirrored);
     else if (!is_delta) h = refraction_normal(o, i, m.eta);
-    float cosine = dot(o, h);
+    float cosine = abs(dot(o, h));  // as of dielectric
     Mueller result = fresnel_dielectric_mueller(facet_axis(mirrored, h), cosine, m.eta == 1.0 ? 1.5 : m.eta, reflects);
+    Spectrum metal = Spectrum(0);
     if (reflects && m.metal > 0.0) {
         Spectrum reflected, transmitted;
         principled_facet(m, cosine, reflected, transmitted);
-        Spectrum metal = m.metal * mix(m.color, Spectrum(1), schlick_weight(cosine)) / max(reflected, Spectrum(1e-30));
+        metal = m.metal * mix(m.color, Spectrum(1), schlick_weight(cosine)) / max(reflected, Spectrum(1e-30));
+        metal = clamp(metal, Spectrum(0), Spectrum(1));
         Mueller mirror = phase_plate(result.from, Spectrum(0), Spectrum(-1), Spectrum(0));
-        result = mixed(result, mirror, clamp(metal, Spectrum(0), Spectrum(1)));
+        result = mixed(result, mirror, metal);
     }
+    result = polarize_by_film(m.film, result, metal, m.thin, m.near, m.eta, cosine, reflects);
     if (!is_delta) {
         Spectrum all = Spectrum(0), facets = Spectrum(0);
         float pdf;

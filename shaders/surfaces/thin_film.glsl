@@ -108,6 +108,19 @@ BsdfSample thin_film_sample(ThinFilm r, SurfaceContext c, vec3 wo, vec3 u) {
     return result;
 }
 
+Mueller thin_film_mueller(ThinFilm r, SurfaceContext c, vec3 from, vec3 to, uint event) {
+    float side = from.z < 0.0 ? -1.0 : 1.0;
+    ThinFilmSide s = thin_film_side(r, c, side);
+    bool reflects = from.z * to.z > 0.0;
+    vec3 h = vec3(0, 0, side);
+    if (!thin_film_is_delta(r, c)) {
+        vec3 turn = vec3(1, 1, side);
+        h = turn * (reflects ? reflection_normal(from * turn, to * turn) : refraction_normal(from * turn, to * turn, s.eta));
+    }
+    Spectrum eta = s.metal ? untinted_value(r.eta) : Spectrum(s.far), k = s.metal ? untinted_value(r.k) : Spectrum(0);
+    return thin_film_mueller(facet_axis(to, h), abs(dot(from, h)), s.near, untinted_value(r.ior), r.thickness, eta, k, reflects);
+}
+
 Spectrum thin_film_transparency(ThinFilm r, SurfaceContext c, vec3 wo) {
     if (c.ior_above != c.ior_below || thin_film_on_metal(r)) return Spectrum(0);
     return 1.0 - thin_film_facet(r, abs(wo.z), c.ior_above, c.ior_below);
