@@ -36,27 +36,34 @@ Spectrum through_event(inout Polarization p, Mueller m, EventFrames f) {
 
 #if STOKES_IMAGE && !FORWARD
 Spectrum through_event(inout Carried c, Mueller m, EventFrames f) {
-    Spectrum factor = through_event(c.first, m, f);
-    Spectrum inverse = mix(1.0 / factor, Spectrum(0), lessThanEqual(factor, Spectrum(1e-20)));
-    for (int i = 0; i < 3; ++i) c.others[i] = scaled(through_event(c.others[i], m, f), inverse);
+    Spectrum factor = Spectrum(1), inverse = Spectrum(1);
+    for (int i = 0; i < 4; ++i) {
+        c.rows[i] = through_event(c.rows[i], m, f);
+        if (i == 0) {
+            factor = max(c.rows[0][0], Spectrum(0));
+            inverse = mix(1.0 / factor, Spectrum(0), lessThanEqual(factor, Spectrum(1e-20)));
+        }
+        c.rows[i] = scaled(c.rows[i], inverse);
+    }
     return factor;
 }
 Carried turned(Carried c, vec2 angle) {
-    c.first = turned(c.first, angle);
-    for (int i = 0; i < 3; ++i) c.others[i] = turned(c.others[i], angle);
+    for (int i = 0; i < 4; ++i) c.rows[i] = turned(c.rows[i], angle);
     return c;
 }
 Received meet(Carried c, Polarization light) {
-    return Stokes(meet(c.first, light), meet(c.others[0], light), meet(c.others[1], light), meet(c.others[2], light));
+    Received sum;
+    for (int i = 0; i < 4; ++i) sum[i] = meet(c.rows[i], light);
+    sum[0] = max(sum[0], Spectrum(0));
+    return sum;
 }
 // The rows of a receiver, in the frame of the light that comes against the ray.
 void start_rows(inout Path path, uint receiver) {
-    path.polarization.first = unpolarized();
     vec2 angle = double_angle(receiver_stokes_axis(receiver, path.direction), stokes_axis(-path.direction), -path.direction);
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < 4; ++i) {
         Stokes row = Stokes(0);
-        row[i + 1] = Spectrum(1);
-        path.polarization.others[i] = turned(row, angle);
+        row[i] = Spectrum(1);
+        path.polarization.rows[i] = turned(row, angle);
     }
 }
 #else

@@ -17,10 +17,7 @@ const uint FILM_LAYERS = 1u;
 // What paths carry of polarization: forward a Stokes vector, backward the row of S0, and for such images those of S1 to S3, in the same
 // units.
 #if STOKES_IMAGE && !FORWARD
-struct Carried {
-    Polarization first;
-    Stokes others[3];
-};
+struct Carried { Stokes rows[4]; };
 #else
 #define Carried Polarization
 #endif
