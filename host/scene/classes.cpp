@@ -61,6 +61,7 @@ void read_class(const std::string& text, ClassInfo& info) {
     info.summary = std::move(head.summary), info.example = std::move(head.example);
     info.says_polarization = text.find(info.name + "_mueller(") != std::string::npos;
     info.has_general_mueller = text.find("is_general") != std::string::npos;
+    info.has_body_mueller = text.find("set_body(") != std::string::npos;
     info.polarizes = std::regex_search(text, std::regex(R"(#define \w+_POLARIZES\b)"));
 }
 

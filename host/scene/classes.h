@@ -57,6 +57,7 @@ struct ClassInfo {
     std::string example;               // as it stands there, JSON; may be empty
     bool says_polarization = false;    // NAME_mueller is there
     bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization
+    bool has_body_mueller = false;     // light leaves its body (shaders/features/body_mueller.glsl)
     bool has_general_mueller = false;  // its matrices are not of two blocks (shaders/lib/stokes.glsl)
     // Filled by reflection, at first use:
     uint32_t stride = 0;  // bytes of a record

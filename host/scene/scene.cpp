@@ -178,6 +178,7 @@ const ClassInfo& SceneCompiler::use_class(Interface interface, const ObjectDescr
         std::lower_bound(used.begin(), used.end(), info, [](auto* a, auto* b) { return a->tag < b->tag; });
     if (place == used.end() || *place != info) used.insert(place, info);
     out_.features.general_mueller |= info->has_general_mueller;
+    out_.features.body_mueller |= info->has_body_mueller;
     return *info;
 }
 

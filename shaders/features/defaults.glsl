@@ -76,6 +76,9 @@
 #ifndef HAS_GENERAL_MUELLER
 #define HAS_GENERAL_MUELLER 0
 #endif
+#ifndef HAS_BODY_MUELLER
+#define HAS_BODY_MUELLER 0
+#endif
 #ifndef HAS_POLARIZED_LIGHTS
 #define HAS_POLARIZED_LIGHTS 0
 #endif

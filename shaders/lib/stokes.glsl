@@ -42,19 +42,24 @@ Stokes turned(Stokes s, vec2 angle) {
 //     0  0   c  -d      and what swings at 45 degrees turns circular by the phase by which y is ahead of x: c and d are cos and sin
 //     0  0   d   c      of it times 2 sqrt(X Y) / (X + Y), the share that stays coherent.
 //
-// `from` and `to` are x of the frames of light that comes and goes, in the frame of the surface. A class whose matrix is another says
+// Besides there is what features/body_mueller.glsl adds. `from` and `to` are x of the frames of light that comes and goes, in the frame of the surface. A class whose matrix is another says
 // `is_general` and gives all of it, row by row and in any units; scenes without such classes have no room for that.
 struct Mueller {
     vec3 from, to;
     Spectrum b, e, c, d;
+    MEMBER_IF(HAS_BODY_MUELLER, Spectrum body;)
+    MEMBER_IF(HAS_BODY_MUELLER, vec2 enters;)
+    MEMBER_IF(HAS_BODY_MUELLER, vec2 leaves;)
     MEMBER_IF(HAS_GENERAL_MUELLER, bool is_general;)
     MEMBER_IF(HAS_GENERAL_MUELLER, Spectrum m[16];)
 };
+#include "features/body_mueller.glsl"
 #include "features/general_mueller.glsl"
 
 Mueller blocks(vec3 from, vec3 to, Spectrum b, Spectrum e, Spectrum c, Spectrum d) {
     Mueller m;
     m.from = from, m.to = to, m.b = b, m.e = e, m.c = c, m.d = d;
+    no_body(m);
     not_general(m);
     return m;
 }
@@ -88,6 +93,7 @@ vec3 facet_axis(vec3 w, vec3 h) {
 Stokes apply_mueller(Stokes s, Mueller m, bool transposed) {
     float sign = transposed ? -1.0 : 1.0;
     Stokes result = Stokes(s[0] + m.b * s[1], m.b * s[0] + m.e * s[1], m.c * s[2] - sign * m.d * s[3], m.c * s[3] + sign * m.d * s[2]);
+    apply_body(m, s, transposed, result);
     apply_general(m, s, transposed, result);
     return result;
 }

@@ -165,8 +165,17 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     return result;
 }
 
+// The body takes light in and sends it out through a face of that index.
+void polarize_body(inout Mueller m, Spectrum share, vec3 from, vec3 to, float ior) {
+    const vec3 n = vec3(0, 0, 1);
+    vec3 in_axis = facet_axis(from, n), out_axis = facet_axis(to, n);
+    float enters = fresnel_dielectric_mueller(in_axis, abs(from.z), ior, false).b.x;
+    float leaves = fresnel_dielectric_mueller(out_axis, abs(to.z), ior, false).b.x;
+    set_body(m, share, enters * double_angle(m.from, in_axis, -from), leaves * double_angle(m.to, out_axis, to));
+}
+
 // Facets and coat polarize by Fresnel's equations about the half vector, metals as mirrors that keep s and p alike (a colour says no
-// more of them), films with interference; what the body and the sheen scatter is depolarized. Thin walls are taken as single faces.
+// more of them), films with interference; the body depolarizes between its faces, the sheen altogether. Thin walls are taken as single faces.
 Mueller principled_mueller(Principled r, SurfaceContext c, vec3 from, vec3 to, uint event) {
     if ((event & EVENT_STRAIGHT) != 0u) return passing(to);
     float side = from.z < 0.0 ? -1.0 : 1.0;
@@ -174,13 +183,14 @@ Mueller principled_mueller(Principled r, SurfaceContext c, vec3 from, vec3 to, u
     PrincipledMaterial m = principled_material(r, c);
     principled_face(m, c, side);
     vec3 o = principled_turned(m, from), i = principled_turned(m, to);
+    float index = m.eta == 1.0 ? r.ior : m.eta;
     bool reflects = i.z > 0.0, is_delta = (event & EVENT_DELTA) != 0u;
     vec3 mirrored = m.thin ? vec3(i.xy, abs(i.z)) : i;
     vec3 h = vec3(0, 0, 1);
     if (reflects || m.thin) h = reflection_normal(o, mirrored);
     else if (!is_delta) h = refraction_normal(o, i, m.eta);
     float cosine = abs(dot(o, h));  // as of dielectric
-    Mueller result = fresnel_dielectric_mueller(facet_axis(mirrored, h), cosine, m.eta == 1.0 ? 1.5 : m.eta, reflects);
+    Mueller result = fresnel_dielectric_mueller(facet_axis(mirrored, h), cosine, index, reflects);
     Spectrum metal = Spectrum(0);
     if (reflects && m.metal > 0.0) {
         Spectrum reflected, transmitted;
@@ -191,20 +201,27 @@ Mueller principled_mueller(Principled r, SurfaceContext c, vec3 from, vec3 to, u
         result = mixed(result, mirror, metal);
     }
     result = polarize_by_film(m.film, result, metal, m.thin, m.near, m.eta, cosine, reflects);
+    Spectrum body = Spectrum(0);
     if (!is_delta) {
         Spectrum all = Spectrum(0), facets = Spectrum(0);
         float pdf;
-        for (uint k = 0u; k < 2u; ++k) {  // a loop, so that the code of all lobes stands once
+        for (uint k = 0u; k < 3u; ++k) {  // a loop, so that the code of all lobes stands once
             Spectrum value = principled_scattering(m, o, i, pdf);
             if (k == 0u) all = value;
+            else if (k == 1u) body = all - value;
             else facets = value;
-            m.diffuse_reflected = m.diffuse_transmitted = m.sheen = Spectrum(0);
+            m.diffuse_reflected = m.diffuse_transmitted = Spectrum(0);
+            if (k == 1u) m.sheen = Spectrum(0);
         }
-        result = partly(result, clamp(facets / max(all, Spectrum(1e-30)), Spectrum(0), Spectrum(1)));
+        Spectrum inverse = 1.0 / max(all, Spectrum(1e-30));
+        body = clamp(body * inverse, Spectrum(0), Spectrum(1));
+        result = partly(result, clamp(facets * inverse, Spectrum(0), Spectrum(1)));
     }
     vec3 turn = vec3(1, 1, side);
     result.from = principled_turned_back(m, result.from) * turn;
     result.to = principled_turned_back(m, result.to) * (i.z < 0.0 && m.thin ? vec3(1, 1, -1) * turn : turn);
+    from.z *= side, to.z *= side;
+    polarize_body(result, body, from, to, r.ior);
     return result;
 }
 

@@ -142,6 +142,25 @@ TEST_CASE("a pane adds its echoes, s and p apart") {
           doctest::Approx(-0.148274198 / 0.848128410).epsilon(1e-5));
 }
 
+// Light goes in along the normal, is depolarized, and comes out by Fresnel: (Tp - Ts) / (Tp + Ts).
+TEST_CASE("what leaves the body of a plastic is polarized by its face") {
+    ClassRegistry classes = registry();
+    SurfaceProbe probe(
+        classes, "principled",
+        {{{"metallic", 0}, {"specular", 0}, {"ior", 1.5}, {"base_color", {0.5, 0.5, 0.5, 1}}}});
+    for (const auto& [angle, degree_of] : {std::pair{60.0, 0.0959}, {1e-3, 0.0}}) {
+        const MuellerQuery out{{0, 0, 1}, direction(angle * degree, 0.4), 0}, in{out.to, out.from, 0};
+        const MuellerAnswer leaves = probe.polarize(0, {}, {{out}})[0],
+                            enters = probe.polarize(0, {}, {{in}})[0];
+        const dmat4 leaving = rotator(leaves.to, across(out.to), out.to) * matrix(leaves);
+        CHECK(leaving[0][1] == doctest::Approx(-degree_of).epsilon(1e-3).scale(1e-2));
+        CHECK(std::fabs(leaving[0][2]) < 1e-5);
+        CHECK(std::fabs(leaving[1][1]) + std::fabs(leaving[2][2]) + std::fabs(leaving[3][3]) < 1e-5);
+        const dmat4 entering = matrix(enters) * rotator(across(in.from), enters.from, -dvec3(in.from));
+        CHECK(entering[1][0] == doctest::Approx(-degree_of).epsilon(1e-3).scale(1e-2));
+    }
+}
+
 TEST_CASE("a twisted nematic cell between polarizers along its directors") {
     ClassRegistry classes = registry();
     SurfaceProbe cell(classes, "lc_cell", {nlohmann::json::object()}),

@@ -30,8 +30,11 @@ void main() {
     SurfaceContext c = unbent_context(vec2(0), vec2(0), vec4(color_r, color_g, color_b, color_a), ior_above, ior_below,
                                       importance != 0u);
     Mueller m = mueller_of(surface, c, queries[i]);
-    const Spectrum none = Spectrum(0);
     muellers[i].from = m.from, muellers[i].to = m.to;
-    Spectrum rows[16] = Spectrum[16](Spectrum(1), m.b, none, none, m.b, m.e, none, none, none, none, m.c, -m.d, none, none, m.d, m.c);
-    for (uint k = 0u; k < 16u; ++k) muellers[i].m[k] = m.is_general ? m.m[k] : rows[k];
+    for (int k = 0; k < 4; ++k) {
+        Stokes unit = Stokes(0);
+        unit[k] = Spectrum(1);
+        Stokes column = apply_mueller(unit, m, false);
+        for (int row = 0; row < 4; ++row) muellers[i].m[4 * row + k] = column[row];
+    }
 }

@@ -19,7 +19,7 @@ Kernel probe_kernel(ShaderSources sources, const std::string& name, const Buffer
     sources.generated[name] = test_kernel_text(name);
     CompileOptions options;
     Features features;
-    features.general_mueller = true;
+    features.general_mueller = features.body_mueller = true;
     options.defines = features.defines();
     return Kernel(test_device(), compile_shader(sources, name, options), buffers);
 }
