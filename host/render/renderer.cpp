@@ -89,12 +89,21 @@ RenderCounters counters_from_json(const nlohmann::json& json) {
     return counters;
 }
 
-// Measured on lavapipe: while the hierarchy fits in the cache and few classes share a kernel, state in
-// registers wins; beyond that long traversals of few lanes hold up the shading of all. A kernel for each
-// class never won there, up to seven classes (30 % slower, Mesa 25 and 22.3), and takes longer to compile: it
-// is left to --schedule. A bent ray takes many steps, each of which would be a bounce with its kernels.
-Schedule choose_schedule(const Scene& scene) {
+// Measured on lavapipe (Mesa 25): state in registers always wins, by 1.1 (a thousand lights) to 2.8
+// (materials), also where kernels hold seven classes or scenes have 50,000 triangles; but one kernel of
+// everything may be larger than drivers compile while one waits. A kernel for each class never won there (30
+// % slower, Mesa 25 and 22.3), and takes longer to compile: it is left to
+// --schedule. On a GPU long traversals of few lanes hold up the shading of all: there the hierarchy should
+// fit in the cache, and few classes share a kernel. A bent ray takes many steps, each of which would be a
+// bounce with its kernels.
+Schedule choose_schedule(Device& device, Scene& scene, const Techniques& techniques) {
     if (scene.features.bending) return Schedule::fused;
+    if (device.description.type == "CPU") {
+        const uint64_t most = scene.features.polarization ? most_polarized_kernel_bytes : most_kernel_bytes;
+        const uint64_t bytes =
+            spirv_bytes(device, scene, "kernels/trace_paths.comp", techniques.backward_defines());
+        return bytes <= most ? Schedule::fused : Schedule::wavefront;
+    }
     size_t classes = 0;
     for (const auto& [interface, used] : scene.classes)
         if (interface != Interface::phase) classes += used.size();  // those are a line each
@@ -112,7 +121,6 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       spectra_(device, scene),
       commands_(device) {
     counter_sums_.fill(0);
-    if (schedule_ == Schedule::automatic) schedule_ = settings_.schedule = choose_schedule(scene);
     choice_ = {settings.algorithm, settings.forward_paths, "asked for", 0};
     if (settings.choice)
         choice_ = *settings.choice;
@@ -134,6 +142,8 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
                                settings_.stokes);
         film.merge(spectral_film_->buffers());
     }
+    if (schedule_ == Schedule::automatic)
+        schedule_ = settings_.schedule = choose_schedule(device, scene, techniques);
     start_media_ = std::make_unique<StartMedia>(device, scene, techniques.forward);
     start_media_->find(settings.receiver, film_aspect());
     film["StartMedia"] = &start_media_->buffer();

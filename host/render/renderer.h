@@ -80,7 +80,12 @@ struct FilmState {
     std::vector<std::byte> bins;  // of the spectral image, if any
 };
 
-Schedule choose_schedule(const Scene& scene);
+// SPIR-V of a kernel, bytes, beyond which drivers take more than some seconds to compile it
+// (tests/renders/kernel_size_test.cpp); polarization takes 60 kB where paths meet.
+constexpr uint64_t most_kernel_bytes = 256 << 10, most_polarized_kernel_bytes = 320 << 10;
+
+struct Techniques;
+Schedule choose_schedule(Device& device, Scene& scene, const Techniques& techniques);
 
 // Making one compiles only what no renderer on the device has compiled yet: for another size of the image,
 // make another one, with the first one's choice in the settings.

@@ -289,6 +289,10 @@ uint64_t element_bytes(Device& device, Scene& scene, const std::string& file, co
         .element_bytes(buffer);
 }
 
+uint64_t spirv_bytes(Device& device, Scene& scene, const std::string& file, const std::string& defines) {
+    return make_program(device, scene, file, with_buffers_of(scene, {}), defines)->spirv_bytes();
+}
+
 Kernel make_color_kernel(Device& device, Scene& scene, const std::string& file, const BufferTable& buffers,
                          const std::string& defines) {
     const InColors colors(scene);

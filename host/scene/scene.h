@@ -112,6 +112,9 @@ Kernel make_kernel(Device& device, Scene& scene, const std::string& file, const 
 uint64_t element_bytes(Device& device, Scene& scene, const std::string& file, const std::string& defines,
                        const std::string& buffer);
 
+// Of a kernel, which is compiled for that, but by no driver.
+uint64_t spirv_bytes(Device& device, Scene& scene, const std::string& file, const std::string& defines);
+
 // While it lives, kernels of the scene are compiled for colours even where paths carry wavelengths: for what
 // does not depend on them.
 class InColors {

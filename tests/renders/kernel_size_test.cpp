@@ -21,8 +21,7 @@ using namespace etendue;
 
 namespace {
 
-constexpr uint64_t most_bytes = 256 << 10, most_bytes_backward = 192 << 10;
-constexpr uint64_t most_bytes_polarized = 320 << 10;  // both ways, with polarization, Stokes images included
+constexpr uint64_t most_bytes_backward = 192 << 10;
 
 struct Largest {
     std::string kernel;
@@ -36,8 +35,9 @@ Largest largest_kernel(Scene& scene, Algorithm algorithm, bool stokes = false) {
     Techniques techniques = choose_techniques(device, scene, algorithm);
     techniques.stokes = stokes;
     const std::string backward = techniques.backward_defines(), forward = techniques.forward_defines();
+    const Schedule schedule = choose_schedule(device, scene, techniques);
     scene.kernels.clear();
-    if (choose_schedule(scene) == Schedule::fused) {
+    if (schedule == Schedule::fused) {
         element_bytes(device, scene, "kernels/trace_paths.comp", backward, "Film");
         if (techniques.forward)
             element_bytes(device, scene, "kernels/trace_forward_paths.comp", forward, "Splats");
@@ -59,8 +59,9 @@ void check_sizes(const SceneDescription& description, const std::string& name) {
     const bool polarized = scene.features.polarization;
     const Largest largest = largest_kernel(scene, Algorithm::bidirectional);
     INFO(name, ", ", largest.kernel);
-    CHECK(largest.bytes <= (polarized ? most_bytes_polarized : most_bytes));
-    if (polarized) CHECK(largest_kernel(scene, Algorithm::bidirectional, true).bytes <= most_bytes_polarized);
+    CHECK(largest.bytes <= (polarized ? most_polarized_kernel_bytes : most_kernel_bytes));
+    if (polarized)
+        CHECK(largest_kernel(scene, Algorithm::bidirectional, true).bytes <= most_polarized_kernel_bytes);
     if (largest.bytes > most_bytes_backward)  // alone they need less
         CHECK(largest_kernel(scene, Algorithm::backward).bytes <= most_bytes_backward);
 }
