@@ -99,7 +99,9 @@ RenderCounters counters_from_json(const nlohmann::json& json) {
 Schedule choose_schedule(Device& device, Scene& scene, const Techniques& techniques) {
     if (scene.features.bending) return Schedule::fused;
     if (device.description.type == "CPU") {
-        const uint64_t most = scene.features.polarization ? most_polarized_kernel_bytes : most_kernel_bytes;
+        const uint64_t most = scene.features.polarization ? most_polarized_kernel_bytes
+                              : techniques.forward        ? most_kernel_bytes
+                                                          : most_backward_kernel_bytes;
         const uint64_t bytes =
             spirv_bytes(device, scene, "kernels/trace_paths.comp", techniques.backward_defines());
         return bytes <= most ? Schedule::fused : Schedule::wavefront;

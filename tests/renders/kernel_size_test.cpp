@@ -21,8 +21,6 @@ using namespace etendue;
 
 namespace {
 
-constexpr uint64_t most_bytes_backward = 192 << 10;
-
 struct Largest {
     std::string kernel;
     uint64_t bytes = 0;
@@ -62,8 +60,8 @@ void check_sizes(const SceneDescription& description, const std::string& name) {
     CHECK(largest.bytes <= (polarized ? most_polarized_kernel_bytes : most_kernel_bytes));
     if (polarized)
         CHECK(largest_kernel(scene, Algorithm::bidirectional, true).bytes <= most_polarized_kernel_bytes);
-    if (largest.bytes > most_bytes_backward)  // alone they need less
-        CHECK(largest_kernel(scene, Algorithm::backward).bytes <= most_bytes_backward);
+    if (largest.bytes > most_backward_kernel_bytes)  // alone they need less
+        CHECK(largest_kernel(scene, Algorithm::backward).bytes <= most_backward_kernel_bytes);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Polarized light seen through sheets and by mirrors, against closed forms; and all algorithms against each
-// other.
+// Polarized light seen through sheets and by mirrors, against closed forms.
 //
 // A camera of a narrow field looks along -z at a white environment, through sheets across its way. What a
 // polarizer, with or without a wave plate behind it, lets through tells the Stokes vector that comes to it.
@@ -7,12 +6,10 @@
 
 #include <array>
 #include <functional>
-#include <glm/gtc/quaternion.hpp>
 
 #include "host/gltf/gltf.h"
 #include "host/spectra/color.h"
-#include "tests/renders/agreement_scenes.h"
-#include "tests/renders/algorithm_comparison.h"
+#include "tests/renders/sheets.h"
 #include "tests/support/source_path.h"
 
 using namespace etendue;
@@ -23,18 +20,6 @@ using json = nlohmann::json;
 using glm::dvec3, glm::dvec4;
 
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-
-json polarizer(double axis) { return {{"class", "linear_polarizer"}, {"axis", axis}}; }
-json wave_plate(double axis, double retardance) {
-    return {{"class", "retarder"}, {"axis", axis}, {"retardance", retardance}};
-}
-
-// A rectangle's +z axis towards n, its x axis as near to `x` as may be.
-Place facing(const dvec3& position, const dvec3& n, const dvec3& x) {
-    const dvec3 z = glm::normalize(n), y = glm::normalize(glm::cross(z, x));
-    const glm::dquat q = glm::quat_cast(glm::dmat3(glm::cross(y, z), y, z));
-    return {position, {q.x, q.y, q.z, q.w}};
-}
 
 // Sheets are met in their order; the last is the farthest from the camera.
 void add_sheets(SceneBuilder& s, const std::vector<json>& sheets, const dvec3& normal = {0, 0, 1},
@@ -337,23 +322,6 @@ TEST_CASE("polarized lights") {
     }
 }
 
-TEST_CASE("polarized lights among metals: all algorithms agree") {
-    SceneBuilder s;
-    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
-    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
-    s.perspective(1.2, at(0, 0, 1.95));
-    s.rectangle(1.5, 1.5,
-                s.material({{"surface", {{"class", "absorber"}}},
-                            {"emission", {{"radiance", 2}, {"stokes", {1, 0.2, 0.4, 0.8}}}}}),
-                hanging(0, 1.95, 0));
-    s.placed("light", {{"class", "spot"}, {"intensity", 5}, {"stokes", {1, -0.8, 0, -0.6}}}, at(0.5, 0.5, 1));
-    Comparison c;
-    c.backward = 64, c.forward = 48, c.bidirectional = 32;
-    c.largest_error = 0.015;
-    c.stokes = true;
-    check_against_backward(s, c);
-}
-
 // What is measured turns against the camera: S0 and S3 stay, S1 and S2 turn by twice the angle. Mirrored, the
 // scene shows S2 and S3 of the other sign.
 TEST_CASE("turned cameras and mirrored scenes") {
@@ -397,66 +365,4 @@ TEST_CASE("the intensity of a Stokes image is that of an image") {
     for (size_t i = 0; i < plain.mean.size(); ++i)
         worst = std::max(worst, std::fabs(plain.mean[i] - stokes.mean[i]) / (1 + plain.mean[i]));
     CHECK(worst < 1e-5);
-}
-
-// Light of a point source reaches the floor through sheets, by shadow rays, and from mirrors, glass and gold
-// by hits, merging and connections; the camera looks through a sheet of its own.
-TEST_CASE("polarized light: all algorithms agree") {
-    SceneBuilder s;
-    add_room(s);
-    add_lamp(s, 1.5);
-    s.rectangle(2, 2, s.surface(polarizer(0.4)), hanging(0, 1.9, 0));
-    s.rectangle(2, 2, s.surface(wave_plate(1.1, 1.2)), hanging(0, 1.88, 0));
-    s.rectangle(0.3, 0.3, s.surface(wave_plate(0.9, 1.1)), at(0, 0, 1.8));
-    s.sphere(
-        0.5,
-        s.surface({{"class", "conductor"}, {"eta", {0.2, 0.4, 1.4}}, {"k", {3.9, 2.4, 1.6}}, {"alpha", 0.2}}),
-        at(-0.9, -1.4, -0.6));
-    s.medium("glass", {{"class", "homogeneous"}, {"ior", 1.5}});
-    for (double alpha : {0.0, 0.3})
-        s.sphere(0.4,
-                 s.material({{"surface", {{"class", "dielectric"}, {"alpha", alpha}}}, {"inside", "glass"}}),
-                 at(alpha > 0 ? 0.9 : 0.1, -1.4, -0.2));
-    s.rectangle(1.2, 1.2, s.surface({{"class", "thin_dielectric"}}),
-                facing({1.2, 0.2, -1}, {-1, 0.4, 1}, {1, 0, 0}));
-    s.rectangle(1.2, 1.2,
-                s.surface({{"class", "reflective_polarizer"}, {"axis", 0.3}, {"pass", 0.9}, {"block", 0.8}}),
-                facing({-1.1, 0.5, -1}, {1, 0.1, 0.8}, {1, 0, 0}));
-    Comparison c;
-    c.backward = 128, c.forward = 96, c.bidirectional = 48;
-    c.tolerance = 0.003, c.largest_error = 0.012;
-    c.stokes = true;
-    check_against_backward(s, c);
-}
-
-// A wrong sign of all rows' S3 shows nowhere but where they meet the vectors of forward paths.
-TEST_CASE("circular light among metals: all algorithms agree") {
-    SceneBuilder s;
-    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
-    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
-    s.perspective(1.2, at(0, 0, 1.95));
-    add_lamp(s, 1.5);
-    s.rectangle(2, 2, s.surface(polarizer(0)), hanging(0, 1.9, 0));
-    s.rectangle(2, 2, s.surface(wave_plate(pi / 4, pi / 2)), hanging(0, 1.88, 0));
-    Comparison c;
-    c.backward = 64, c.forward = 48, c.bidirectional = 32;
-    c.largest_error = 0.01;
-    c.stokes = true;
-    check_against_backward(s, c);
-}
-
-TEST_CASE("polarized light in fog: all algorithms agree") {
-    SceneBuilder s;
-    s.medium("fog", {{"class", "homogeneous"}, {"scattering", 0.5}, {"phase", {{"class", "rayleigh"}}}});
-    add_box(s, {4, 4, 4}, s.lambertian({0.7, 0.5, 0.3}), true, at(0, 0, 0));
-    s.sphere(1.2, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}}), at(0, 0, -0.5));
-    s.perspective(1.2, at(0, 0, 1.95));
-    add_lamp(s, 0.5);
-    s.rectangle(0.3, 0.3, s.surface(wave_plate(0.9, 1.1)), at(0, 0, 1.8));
-    s.sphere(0.4, s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}}), at(0.2, -0.2, -0.6));
-    Comparison c;
-    c.backward = 128, c.forward = 96, c.bidirectional = 48;
-    c.largest_error = 0.01;
-    c.stokes = true;
-    check_against_backward(s, c);
 }

@@ -1,0 +1,91 @@
+// Polarized light in S0 to S3: forward and bidirectional rays against backward ones.
+#include <doctest/doctest.h>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "tests/renders/agreement_scenes.h"
+#include "tests/renders/algorithm_comparison.h"
+#include "tests/renders/sheets.h"
+
+using namespace etendue;
+
+constexpr double pi = std::numbers::pi;
+
+// Light of a point source reaches the floor through sheets, by shadow rays, and from mirrors, glass and gold
+// by hits, merging and connections; the camera looks through a sheet of its own.
+TEST_CASE("polarized light: all algorithms agree") {
+    SceneBuilder s;
+    add_room(s);
+    add_lamp(s, 1.5);
+    s.rectangle(2, 2, s.surface(polarizer(0.4)), hanging(0, 1.9, 0));
+    s.rectangle(2, 2, s.surface(wave_plate(1.1, 1.2)), hanging(0, 1.88, 0));
+    s.rectangle(0.3, 0.3, s.surface(wave_plate(0.9, 1.1)), at(0, 0, 1.8));
+    s.sphere(
+        0.5,
+        s.surface({{"class", "conductor"}, {"eta", {0.2, 0.4, 1.4}}, {"k", {3.9, 2.4, 1.6}}, {"alpha", 0.2}}),
+        at(-0.9, -1.4, -0.6));
+    s.medium("glass", {{"class", "homogeneous"}, {"ior", 1.5}});
+    for (double alpha : {0.0, 0.3})
+        s.sphere(0.4,
+                 s.material({{"surface", {{"class", "dielectric"}, {"alpha", alpha}}}, {"inside", "glass"}}),
+                 at(alpha > 0 ? 0.9 : 0.1, -1.4, -0.2));
+    s.rectangle(1.2, 1.2, s.surface({{"class", "thin_dielectric"}}),
+                facing({1.2, 0.2, -1}, {-1, 0.4, 1}, {1, 0, 0}));
+    s.rectangle(1.2, 1.2,
+                s.surface({{"class", "reflective_polarizer"}, {"axis", 0.3}, {"pass", 0.9}, {"block", 0.8}}),
+                facing({-1.1, 0.5, -1}, {1, 0.1, 0.8}, {1, 0, 0}));
+    Comparison c;
+    c.backward = 64, c.forward = 64, c.bidirectional = 32;
+    c.tolerance = 0.003, c.largest_error = 0.012;
+    c.stokes = true;
+    check_against_backward(s, c);
+}
+
+// A wrong sign of all rows' S3 shows nowhere but where they meet the vectors of forward paths.
+TEST_CASE("circular light among metals: all algorithms agree") {
+    SceneBuilder s;
+    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
+    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
+    s.perspective(1.2, at(0, 0, 1.95));
+    add_lamp(s, 1.5);
+    s.rectangle(2, 2, s.surface(polarizer(0)), hanging(0, 1.9, 0));
+    s.rectangle(2, 2, s.surface(wave_plate(pi / 4, pi / 2)), hanging(0, 1.88, 0));
+    Comparison c;
+    c.backward = 64, c.forward = 48, c.bidirectional = 32;
+    c.largest_error = 0.01;
+    c.stokes = true;
+    check_against_backward(s, c);
+}
+
+TEST_CASE("polarized light in fog: all algorithms agree") {
+    SceneBuilder s;
+    s.medium("fog", {{"class", "homogeneous"}, {"scattering", 0.5}, {"phase", {{"class", "rayleigh"}}}});
+    add_box(s, {4, 4, 4}, s.lambertian({0.7, 0.5, 0.3}), true, at(0, 0, 0));
+    s.sphere(1.2, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}}), at(0, 0, -0.5));
+    s.perspective(1.2, at(0, 0, 1.95));
+    add_lamp(s, 0.5);
+    s.rectangle(0.3, 0.3, s.surface(wave_plate(0.9, 1.1)), at(0, 0, 1.8));
+    s.sphere(0.4, s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}}), at(0.2, -0.2, -0.6));
+    Comparison c;
+    c.backward = 64, c.forward = 64, c.bidirectional = 32;
+    c.largest_error = 0.01;
+    c.stokes = true;
+    check_against_backward(s, c);
+}
+
+TEST_CASE("polarized lights among metals: all algorithms agree") {
+    SceneBuilder s;
+    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
+    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
+    s.perspective(1.2, at(0, 0, 1.95));
+    s.rectangle(1.5, 1.5,
+                s.material({{"surface", {{"class", "absorber"}}},
+                            {"emission", {{"radiance", 2}, {"stokes", {1, 0.2, 0.4, 0.8}}}}}),
+                hanging(0, 1.95, 0));
+    s.placed("light", {{"class", "spot"}, {"intensity", 5}, {"stokes", {1, -0.8, 0, -0.6}}}, at(0.5, 0.5, 1));
+    Comparison c;
+    c.backward = 64, c.forward = 48, c.bidirectional = 32;
+    c.largest_error = 0.015;
+    c.stokes = true;
+    check_against_backward(s, c);
+}
