@@ -251,6 +251,23 @@ const Fault faults[] = {
      [](json& d) { d["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = -1; }},
     {"/nodes/3/extensions/ETD_optics/geometry/material: is 6; /materials has elements 0 to 1",
      [](json& d) { d["nodes"][3]["extensions"]["ETD_optics"]["geometry"]["material"] = 6; }},
+    {"/nodes/3/extensions/ETD_optics/light/stokes: must be [1, S1, S2, S3] with S1² + S2² + S3² at most 1",
+     [](json& d) {
+         d["nodes"][3]["extensions"]["ETD_optics"]["light"] = {{"class", "point"},
+                                                               {"stokes", {1, 0.8, 0.8, 0}}};
+     }},
+    {"/nodes/3/extensions/ETD_optics/light/stokes: has 3 elements; must be 4 numbers",
+     [](json& d) {
+         d["nodes"][3]["extensions"]["ETD_optics"]["light"] = {{"class", "point"}, {"stokes", {1, 0, 0}}};
+     }},
+    {"/nodes/3/extensions/ETD_optics/receiver/stokes: is",
+     [](json& d) {
+         d["nodes"][3]["extensions"]["ETD_optics"]["receiver"] = {{"class", "perspective"}, {"stokes", 1}};
+     }},
+    {"/nodes/3/extensions/ETD_optics/receiver: has no \"class\"",
+     [](json& d) {
+         d["nodes"][3]["extensions"]["ETD_optics"]["receiver"] = {{"stokes", true}};
+     }},
     {"/nodes/3/extensions/ETD_optics/shape: is not known; allowed are geometry, light, receiver, element",
      [](json& d) { d["nodes"][3]["extensions"]["ETD_optics"]["shape"] = 6; }},
     {"/extensions/ETD_optics/media/1: has the name 'fog', which another medium has",
