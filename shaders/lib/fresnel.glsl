@@ -7,17 +7,21 @@
 //   r_s = (c - g) / (c + g),   r_p = (eta² c - g) / (eta² c + g)
 // are written as quotients whose numerators hold the small factor eta² - 1, so that nearly matched media keep
 // their digits and matched ones give 0.
-float fresnel_dielectric(float cos_o, float eta) {
+vec2 fresnel_dielectric_parts(float cos_o, float eta) {  // of s and p
     float c = min(abs(cos_o), 1.0);
     float eta2 = eta * eta;
     float difference = (eta - 1.0) * (eta + 1.0);
     float g2 = difference + c * c;
-    if (g2 <= 0.0) return difference < 0.0 ? 1.0 : 0.0;
+    if (g2 <= 0.0) return vec2(difference < 0.0 ? 1.0 : 0.0);
     float g = sqrt(g2);
     float s = c + g, p = eta2 * c + g;
     float r_s = difference / (s * s);
     float r_p = difference * (c * c * (eta2 + 1.0) - 1.0) / (p * p);
-    return min(0.5 * (r_s * r_s + r_p * r_p), 1.0);
+    return vec2(r_s * r_s, r_p * r_p);
+}
+float fresnel_dielectric(float cos_o, float eta) {
+    vec2 parts = fresnel_dielectric_parts(cos_o, eta);
+    return min(0.5 * (parts.x + parts.y), 1.0);
 }
 
 // a² and b² of a - i b = sqrt((eta - i k)² - s2); each is taken from the form that does not cancel.

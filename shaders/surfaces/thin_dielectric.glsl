@@ -1,6 +1,6 @@
 // A pane: two smooth parallel interfaces, all reflections between them summed. The pane itself has no
 // thickness, so what it lets through goes straight on: R' = R + T² R + T² R³ + … = 2 R / (1 + R),
-// T' = 1 - R'. Lossless.
+// T' = 1 - R', of s and p each: a reflection within meets light that the faces have polarized. Lossless.
 //
 // Example:
 //     {"materials": [{"name": "glass bubble", "extensions": {"ETD_optics": {
@@ -14,8 +14,9 @@ struct ThinDielectric {
 ThinDielectric thin_dielectric_resolve(ThinDielectric r, SurfaceContext c) { return r; }
 
 float thin_dielectric_reflectance(ThinDielectric r, SurfaceContext c, vec3 wo) {
-    float f = fresnel_dielectric(wo.z, r.ior / (wo.z < 0.0 ? c.ior_below : c.ior_above));
-    return 2.0 * f / (1.0 + f);
+    vec2 f = fresnel_dielectric_parts(wo.z, r.ior / (wo.z < 0.0 ? c.ior_below : c.ior_above));
+    f = 2.0 * f / (1.0 + f);
+    return min(0.5 * (f.x + f.y), 1.0);
 }
 
 SurfacePair thin_dielectric_evaluate(ThinDielectric r, SurfaceContext c, vec3 wo, vec3 wi) { return no_surface_pair(); }

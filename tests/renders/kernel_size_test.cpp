@@ -36,13 +36,12 @@ Largest largest_kernel(Scene& scene, Algorithm algorithm, bool stokes = false) {
     const Schedule schedule = choose_schedule(device, scene, techniques);
     scene.kernels.clear();
     if (schedule == Schedule::fused) {
-        element_bytes(device, scene, "kernels/trace_paths.comp", backward, "Film");
-        if (techniques.forward)
-            element_bytes(device, scene, "kernels/trace_forward_paths.comp", forward, "Splats");
+        spirv_bytes(device, scene, "kernels/trace_paths.comp", backward);
+        if (techniques.forward) spirv_bytes(device, scene, "kernels/trace_forward_paths.comp", forward);
     } else {
         for (const char* file : {"kernels/scatter_paths.comp", "kernels/find_occlusions.comp"}) {
-            element_bytes(device, scene, file, backward, "PathStates");
-            if (techniques.forward) element_bytes(device, scene, file, forward, "ShadowRays");
+            spirv_bytes(device, scene, file, backward);
+            if (techniques.forward) spirv_bytes(device, scene, file, forward);
         }
     }
     Largest largest;

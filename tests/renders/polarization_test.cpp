@@ -254,6 +254,44 @@ TEST_CASE("example retarders: Michel-Lévy's colours") {
     }
 }
 
+TEST_CASE("example fresnel_rhomb: linear light leaves circular") {
+    RenderPlan plan;
+    plan.width = plan.height = 64, plan.stokes = true;
+    const Estimates e = render_estimates(import_gltf(source_path("scenes/fresnel_rhomb.gltf")), plan);
+    const auto mean = [&](uint32_t x, uint32_t y, uint32_t layer) {
+        return window_mean(e, {x - 4, 64 * layer + y - 4, 8, 8}).mean;
+    };
+    // (1 - R)² / (1 ∓ R²): what goes to and fro turns to the other side each time.
+    const double beside[] = {100, 0, 100, 0}, through[] = {92.308, 0, 0, 92.013};
+    for (uint32_t layer = 0; layer < 4; ++layer) {
+        CAPTURE(layer);
+        CHECK(mean(8, 32, layer) == doctest::Approx(beside[layer]).epsilon(1e-4).scale(100));
+        CHECK(mean(32, 32, layer) == doctest::Approx(through[layer]).epsilon(2e-3).scale(100));
+    }
+}
+
+TEST_CASE("example glass_table: the mirror image is horizontal, a polarizer takes it away") {
+    const SceneDescription scene = import_gltf(source_path("scenes/glass_table.gltf"));
+    RenderPlan plan;
+    plan.width = 96, plan.height = 64, plan.passes = 256, plan.stokes = true;
+    const auto centre = [&](const Estimates& e, uint32_t layer) {
+        return window_mean(e, {46, 64 * layer + 30, 4, 4}).mean;
+    };
+    const Estimates e = render_estimates(scene, plan);
+    const double s0 = centre(e, 0), s1 = centre(e, 1);
+    MESSAGE("S0 ", s0, ", S1 ", s1, ", S2 ", centre(e, 2));
+    // A pane reflects 2 r / (1 + r) of s, r = 0.147929, and nothing of p. So it polarizes the card below,
+    // too, whose p is all there is.
+    const double reflected = 0.257732, card = s0 - s1;
+    CHECK(s1 == doctest::Approx(0.5 * reflected * (500 - card)).epsilon(0.01));
+    CHECK(std::fabs(centre(e, 2)) < 0.02 * s0);
+    plan.stokes = false;
+    plan.receiver = "upright";
+    CHECK(centre(render_estimates(scene, plan), 0) == doctest::Approx(0.5 * card).epsilon(0.2));
+    plan.receiver = "level";
+    CHECK(centre(render_estimates(scene, plan), 0) == doctest::Approx(0.5 * (s0 + s1)).epsilon(0.05));
+}
+
 TEST_CASE("two mirrors of glass reflect by their planes") {
     check_seen(seen(two_mirrors(glass_mirror, {0, 0, 1}), PolarizationMode::on, 160), 0.004269070);
     check_seen(seen(two_mirrors(glass_mirror, {1, 0, 0}), PolarizationMode::on, 160), 0.000779027);

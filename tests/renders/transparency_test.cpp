@@ -41,12 +41,17 @@ int alpha_material(SceneBuilder& s, double alpha) {
          {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, alpha}}, {"roughnessFactor", 1}}}});
 }
 
-double fresnel(double cosine) {
+glm::dvec2 fresnel_parts(double cosine) {  // of s and p
     const double t = std::sqrt(1 - (1 - cosine * cosine) / (ior * ior));
     const double s = (cosine - ior * t) / (cosine + ior * t), p = (ior * cosine - t) / (ior * cosine + t);
-    return 0.5 * (s * s + p * p);
+    return {s * s, p * p};
 }
-double pane_transmittance(double cosine) { return 1 - 2 * fresnel(cosine) / (1 + fresnel(cosine)); }
+double fresnel(double cosine) { return 0.5 * (fresnel_parts(cosine).x + fresnel_parts(cosine).y); }
+// s and p meet the second face as they have left the first.
+double pane_transmittance(double cosine) {
+    const glm::dvec2 r = fresnel_parts(cosine), t = (1.0 - r) / (1.0 + r);
+    return 0.5 * (t.x + t.y);
+}
 
 double cosine_at(double x, double y, double h) { return h / std::sqrt(x * x + y * y + h * h); }
 

@@ -169,7 +169,7 @@ class Gltf:
             }
         )
 
-    def camera(self, position, target, yfov_degrees, aspect, name="camera"):
+    def camera(self, position, target, yfov_degrees, aspect, name="camera", stokes=False):
         self.cameras.append(
             {
                 "name": name,
@@ -181,11 +181,9 @@ class Gltf:
                 },
             }
         )
-        self.nodes.append(
-            {"name": name, "camera": len(self.cameras) - 1, "matrix": look_at(position, target)}
-        )
+        self._camera_node(name, position, target, stokes)
 
-    def orthographic(self, position, target, ymag, aspect, name="camera"):
+    def orthographic(self, position, target, ymag, aspect, name="camera", stokes=False):
         """Shows `ymag` metres above and below the target."""
         self.cameras.append(
             {
@@ -194,9 +192,14 @@ class Gltf:
                 "orthographic": {"xmag": ymag * aspect, "ymag": ymag, "znear": 0.01, "zfar": 100},
             }
         )
-        self.nodes.append(
-            {"name": name, "camera": len(self.cameras) - 1, "matrix": look_at(position, target)}
-        )
+        self._camera_node(name, position, target, stokes)
+
+    def _camera_node(self, name, position, target, stokes):
+        """`stokes`: the receiver measures S1 to S3, too."""
+        node = {"name": name, "camera": len(self.cameras) - 1, "matrix": look_at(position, target)}
+        if stokes:
+            node["extensions"] = {"ETD_optics": {"receiver": {"stokes": True}}}
+        self.nodes.append(node)
 
     # The file.
     def write(self, path):

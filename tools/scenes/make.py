@@ -16,7 +16,7 @@ from furnaces import furnace_closed, furnace_rough, furnace_smooth, spheres
 from grin import grin
 from lights import lamps, many_lights
 from manual import write_showcases
-from polarization import polarizers, retarders
+from polarization import fresnel_rhomb, glass_table, polarizers, retarders
 from scattering import cloud, glass_in_fog
 from surfaces import films, finishes, materials
 from water import iced_water, pool
@@ -39,6 +39,8 @@ SCENES = [
     films,
     polarizers,
     retarders,
+    glass_table,
+    fresnel_rhomb,
     many_lights,
     furnace_smooth,
     furnace_rough,
