@@ -83,7 +83,7 @@ struct FilmState {
 // SPIR-V of a kernel, bytes, beyond which drivers take more than some seconds to compile it
 // (tests/renders/kernel_size_test.cpp): of backward rays alone, which a first pass waits for; both ways; both
 // ways with polarization.
-constexpr uint64_t most_backward_kernel_bytes = 192 << 10, most_kernel_bytes = 256 << 10,
+constexpr uint64_t most_backward_kernel_bytes = 224 << 10, most_kernel_bytes = 256 << 10,
                    most_polarized_kernel_bytes = 320 << 10;
 
 struct Techniques;

@@ -1,7 +1,7 @@
-// Polarized light. A forward path carries a Stokes vector, a backward one a row that multiplies such vectors from the left: the first
-// number is the path's throughput, the others stand beside it in units of that, in the frame of the light, which goes against backward
-// rays. Directions, depths and Russian roulette are chosen without it, so that the densities of all ways to make a path stay as they
-// are; an event takes or gives up to twice of what it does to unpolarized light.
+// Polarized light. A forward path carries a Stokes vector, a backward one a row that multiplies such vectors from the left: the
+// first number is the path's throughput, the others stand beside it in units of that, in the frame of the light, which goes
+// against backward rays. Directions, depths and Russian roulette are chosen without it, so that the densities of all ways to make
+// a path stay as they are; an event takes or gives up to twice of what it does to unpolarized light.
 //
 // Rows and vectors meet where paths do (Mojzík et al. 2016, "Bi-directional Polarised Light Transport").
 #include "features/polarized_lights.glsl"
@@ -14,7 +14,8 @@
 
 #if HAS_POLARIZATION
 
-// An event: by how much the frames of the vectors or rows that come must be turned to be those of its matrix, and the same behind it.
+// An event: by how much the frames of the vectors or rows that come must be turned to be those of its matrix, and the same behind
+// it.
 struct EventFrames {
     vec2 before, after;  // double_angle()
     bool transposed;     // for rows
@@ -150,8 +151,8 @@ void end_at_light(inout ShadowRay shadow, uint light) { shadow.end = light_polar
 #define end_at_light(shadow, light)
 #endif
 
-// What reaches the receiver of light that a backward path comes to, or a shadow ray has passed on to its end: `brought`, if it is not
-// polarized.
+// What reaches the receiver of light that a backward path comes to, or a shadow ray has passed on to its end: `brought`, if it is
+// not polarized.
 #if (STOKES_IMAGE || HAS_POLARIZED_LIGHTS) && !FORWARD
 Received seen_light(Path path, Spectrum brought, uint light) {
     return scaled(meet(path.polarization, light_polarization(light, -path.direction)), brought);

@@ -37,8 +37,8 @@ void bound_film(PrincipledFilm film, float f90, float mu, float widest, inout fl
     average = mix(average, f90 * (most + (1.0 - most) * 2.0 / (2.5 * 3.5)), film.part);
 }
 
-// What facets of metal, of a dielectric that is diffuse below and of one that lets light through reflect, and what the last lets pass.
-// `parts`: of the surface that are those three; `near` and `eta` of the last, unless it is thin.
+// What facets of metal, of a dielectric that is diffuse below and of one that lets light through reflect, and what the last lets
+// pass. `parts`: of the surface that are those three; `near` and `eta` of the last, unless it is thin.
 void reflect_by_film(PrincipledFilm film, vec3 parts, bool thin, float near, float eta, float f90, float cos_o,
                      inout Spectrum metal, inout Spectrum opaque, inout Spectrum transmitter, inout Spectrum passes) {
     if (!(film.part > 0.0)) return;
@@ -59,7 +59,8 @@ void reflect_by_film(PrincipledFilm film, vec3 parts, bool thin, float near, flo
     }
 }
 // What a film on the facets, of metal for this part, does to the polarization of what they reflect or let through.
-Mueller polarize_by_film(PrincipledFilm film, Mueller m, Spectrum metal, bool thin, float near, float eta, float cos_o, bool reflects) {
+Mueller polarize_by_film(PrincipledFilm film, Mueller m, Spectrum metal, bool thin, float near, float eta, float cos_o,
+                         bool reflects) {
     if (!(film.part > 0.0)) return m;
     bool solid = !reflects && !thin;
     Spectrum base = solid ? Spectrum(near * eta) : film.dielectric_index;

@@ -12,8 +12,8 @@ struct RecordedEvent {
 RecordedEvent recorded_event;
 uint recorded_light;  // that a forward path has left
 
-// S1 to S3 over S0 of what the path carries, the mean of the lanes as the eye weighs them, and x of their frame; 0 where paths carry
-// none.
+// S1 to S3 over S0 of what the path carries, the mean of the lanes as the eye weighs them, and x of their frame; 0 where paths
+// carry none.
 #if HAS_POLARIZATION
 void recorded_polarization(Path path, out vec3 stokes, out vec3 axis) {
     Polarization p = path.polarization;

@@ -1,5 +1,5 @@
-// The film of a spectral image: for every pixel, in each of its layers, SPECTRAL_BINS sums of spectral radiance, W / (m^2 sr nm), over equal shares of
-// the visible range, and what each addition has lost (lib/film.glsl). A pass adds to four of them at most.
+// The film of a spectral image: for every pixel, in each of its layers, SPECTRAL_BINS sums of spectral radiance, W / (m^2 sr nm),
+// over equal shares of the visible range, and what each addition has lost (lib/film.glsl). A pass adds to four bins of a layer at most.
 #include "features/defaults.glsl"
 #include "features/stokes_images.glsl"
 

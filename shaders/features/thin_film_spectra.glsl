@@ -17,7 +17,8 @@ Spectrum thin_film_reflectance(float cos_o, float n, Spectrum film, float thickn
 }
 
 // Sums of film_moments(): |s|², |p|², and both parts of p conj(s).
-void thin_film_moments(float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k, bool reflects, out Spectrum m[4]) {
+void thin_film_moments(float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k, bool reflects,
+                       out Spectrum m[4]) {
     vec4 nm = wavelengths[batch_pass].nm;
     uint count = nm.x > 0.0 ? 4u : 0u;  // as above
     m[0] = m[1] = m[2] = m[3] = Spectrum(0);
@@ -58,7 +59,8 @@ Spectrum thin_film_reflectance(float cos_o, float n, Spectrum film, float thickn
     return clamp(sum, vec3(0), vec3(1));
 }
 
-void thin_film_moments(float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k, bool reflects, out Spectrum m[4]) {
+void thin_film_moments(float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k, bool reflects,
+                       out Spectrum m[4]) {
     m[0] = m[1] = m[2] = m[3] = Spectrum(0);
     for (uint i = 0u; i < FILM_BANDS; ++i) {
         float wavenumber = 1.0 / 0.710 + (float(i) + 0.5) * FILM_BAND_WIDTH;
@@ -71,9 +73,10 @@ void thin_film_moments(float cos_o, float n, Spectrum film, float thickness, Spe
 }
 #endif
 
-// What a film does to polarization; `axis`: across the plane of incidence. Channels have negative weights for some wavelengths: what
-// would be more polarization than light is cut.
-Mueller thin_film_mueller(vec3 axis, float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k, bool reflects) {
+// What a film does to polarization; `axis`: across the plane of incidence. Channels have negative weights for some wavelengths:
+// what would be more polarization than light is cut.
+Mueller thin_film_mueller(vec3 axis, float cos_o, float n, Spectrum film, float thickness, Spectrum eta, Spectrum k,
+                          bool reflects) {
     Spectrum m[4];
     thin_film_moments(max(cos_o, 0.0), n, film, thickness, eta, k, reflects, m);
     Spectrum inverse = 1.0 / max(m[0] + m[1], Spectrum(1e-30));

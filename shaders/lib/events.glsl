@@ -67,8 +67,8 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
 }
 
 // Russian roulette on what the path still carries. Radiance that has entered a dense medium is scaled by 1 / ior² until it
-// leaves, which is no reason to end the path. Long paths that keep all they carry end neither where they scatter in a medium nor where
-// they are refracted (`passes`): light scatters thousands of times before it comes out, and glass may have as many faces.
+// leaves, which is no reason to end the path. Long paths that keep all they carry end neither where they scatter in a medium nor
+// where they are refracted (`passes`): light scatters thousands of times before it comes out, and glass may have as many faces.
 bool survive_roulette(inout Path path, bool passes) {
     if (path.depth < 3u) return true;
     float carried = max_component(path.throughput);

@@ -19,8 +19,8 @@ struct Polarization { Spectrum s1, s2, s3; };
 
 Polarization unpolarized() { return Polarization(Spectrum(0), Spectrum(0), Spectrum(0)); }
 
-// (cos, sin) of twice the angle by which x must be turned to lie along `axis`, counter-clockwise seen against `direction`. All are unit
-// vectors, both axes across the direction.
+// (cos, sin) of twice the angle by which x must be turned to lie along `axis`, counter-clockwise seen against `direction`. All
+// are unit vectors, both axes across the direction.
 vec2 double_angle(vec3 x, vec3 axis, vec3 direction) {
     float c = dot(x, axis), s = dot(cross(x, axis), direction);
     return vec2(c * c - s * s, 2.0 * s * c);
@@ -42,8 +42,9 @@ Stokes turned(Stokes s, vec2 angle) {
 //     0  0   c  -d      and what swings at 45 degrees turns circular by the phase by which y is ahead of x: c and d are cos and sin
 //     0  0   d   c      of it times 2 sqrt(X Y) / (X + Y), the share that stays coherent.
 //
-// Besides there is what features/body_mueller.glsl adds. `from` and `to` are x of the frames of light that comes and goes, in the frame of the surface. A class whose matrix is another says
-// `is_general` and gives all of it, row by row and in any units; scenes without such classes have no room for that.
+// Besides there is what features/body_mueller.glsl adds. `from` and `to` are x of the frames of light that comes and goes, in the
+// frame of the surface. A class whose matrix is another says `is_general` and gives all of it, row by row and in any units;
+// scenes without such classes have no room for that.
 struct Mueller {
     vec3 from, to;
     Spectrum b, e, c, d;
@@ -92,7 +93,8 @@ vec3 facet_axis(vec3 w, vec3 h) {
 // M applied to a Stokes vector, or (`transposed`) a row to M, in units of what M lets through of unpolarized light.
 Stokes apply_mueller(Stokes s, Mueller m, bool transposed) {
     float sign = transposed ? -1.0 : 1.0;
-    Stokes result = Stokes(s[0] + m.b * s[1], m.b * s[0] + m.e * s[1], m.c * s[2] - sign * m.d * s[3], m.c * s[3] + sign * m.d * s[2]);
+    Stokes result = Stokes(s[0] + m.b * s[1], m.b * s[0] + m.e * s[1], m.c * s[2] - sign * m.d * s[3],
+                           m.c * s[3] + sign * m.d * s[2]);
     apply_body(m, s, transposed, result);
     apply_general(m, s, transposed, result);
     return result;

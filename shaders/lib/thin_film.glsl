@@ -53,8 +53,8 @@ FilmStack film_stack(float cos_o, float n, float film, float thickness, vec2 bas
     return stack;
 }
 
-// near B - C and near B + C of a film on a base, with B = cos + (i sin / film) base, C = cos base + i sin film: the ratio is what it
-// reflects of the amplitude.
+// near B - C and near B + C of a film on a base, with B = cos + (i sin / film) base, C = cos base + i sin film: the ratio is what
+// it reflects of the amplitude.
 void film_fields(float near, vec2 base, float c, float p, float q, out vec2 minus, out vec2 plus) {
     vec2 b = near * vec2(c - p * base.y, p * base.x);
     vec2 d = vec2(c * base.x, c * base.y + q);
@@ -94,8 +94,8 @@ float film_reflectance(float cos_o, float n, float film, float thickness, vec2 b
 vec2 complex_product(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 vec2 conjugate(vec2 a) { return vec2(a.x, -a.y); }
 
-// Of light that a film reflects or lets through: |s|², |p|² and p conj(s), complex, of its amplitudes, in Verdet's signs (r_p is less
-// the admittances' one).
+// Of light that a film reflects or lets through: |s|², |p|² and p conj(s), complex, of its amplitudes, in Verdet's signs (r_p is
+// less the admittances' one).
 vec4 film_moments(FilmStack stack, bool reflects, float phase_range) {
     vec2 minus_s, plus_s, minus_p, plus_p;
     film_fields(stack.near.x, stack.base_s, stack.c, stack.quotient.x, stack.product.x, minus_s, plus_s);

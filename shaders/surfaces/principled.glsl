@@ -174,8 +174,9 @@ void polarize_body(inout Mueller m, Spectrum share, vec3 from, vec3 to, float io
     set_body(m, share, enters * double_angle(m.from, in_axis, -from), leaves * double_angle(m.to, out_axis, to));
 }
 
-// Facets and coat polarize by Fresnel's equations about the half vector, metals as mirrors that keep s and p alike (a colour says no
-// more of them), films with interference; the body depolarizes between its faces, the sheen altogether. Thin walls are taken as single faces.
+// Facets and coat polarize by Fresnel's equations about the half vector, metals as mirrors that keep s and p alike (a colour says
+// no more of them), films with interference; the body depolarizes between its faces, the sheen altogether. Thin walls are taken
+// as single faces.
 Mueller principled_mueller(Principled r, SurfaceContext c, vec3 from, vec3 to, uint event) {
     if ((event & EVENT_STRAIGHT) != 0u) return passing(to);
     float side = from.z < 0.0 ? -1.0 : 1.0;

@@ -1,7 +1,7 @@
 // No kernel is larger than a driver compiles while one waits. LLVM's time grows faster than a kernel: on a
 // processor without AVX-512, under lavapipe, 0.5 s for 70 kB of SPIR-V, 1 s for 110, 2 to 3 s for 190, 4 to 5
 // s for 250 (Mesa 25.0.7, LLVM 15, EPYC). What backward rays alone need, which is what a first pass waits
-// for, stays below 190. Polarization takes 80 kB where paths meet.
+// for, stays below 224. Polarization takes 60 to 80 kB where paths meet.
 //
 // Whoever exceeds it: find what stands in a kernel many times (a function called at many sites, an
 // `evaluate`), and let it stand once, in a loop; or split the kernel.

@@ -254,6 +254,22 @@ TEST_CASE("example retarders: Michel-Lévy's colours") {
     }
 }
 
+// Nothing polarizes a Cornell box: S1 to S3 are exactly 0, and the image is that without polarization.
+TEST_CASE("a scene that depolarizes everything") {
+    RenderPlan plan;
+    plan.width = plan.height = 24, plan.seeds = 2, plan.passes = 4;
+    plan.algorithm = Algorithm::bidirectional;
+    Scene scene = compile_test_scene(import_gltf(source_path("scenes/cornell_box.gltf")));
+    CHECK(!scene.features.polarization);
+    const Estimates plain = render_estimates(scene, plan);
+    scene.features.polarization = true;
+    plan.stokes = true;
+    const Estimates stokes = render_estimates(scene, plan);
+    for (size_t i = 0; i < plain.mean.size(); ++i)
+        CHECK(stokes.mean[i] == doctest::Approx(plain.mean[i]).epsilon(1e-5));
+    for (size_t i = plain.mean.size(); i < stokes.mean.size(); ++i) CHECK(stokes.mean[i] == 0);
+}
+
 TEST_CASE("example fresnel_rhomb: linear light leaves circular") {
     RenderPlan plan;
     plan.width = plan.height = 64, plan.stokes = true;
