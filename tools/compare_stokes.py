@@ -193,7 +193,8 @@ def compare(name, variant, scene, a):
     error = [np.var(own, axis=0, ddof=1).sum(axis=0).mean() for own in images]
     ratio = error[0] * seconds[0] / (error[1] * seconds[1])
     agree = np.abs(z).max() < limit
-    print(f"{name}, {renderers[1].name}: {'agree' if agree else 'DIFFERENT'}, largest |z| {np.abs(z).max():.2f} of {z.size} tiles, limit {limit:.2f}")
+    verdict = "agree" if agree else "DIFFERENT"
+    print(f"{name}, {renderers[1].name}: {verdict}, largest |z| {np.abs(z).max():.2f} of {z.size} tiles, limit {limit:.2f}")
     for i, renderer in enumerate(renderers):
         layers = " ".join(f"{m:+.5f}" for m in means[i].mean(axis=(1, 2)))
         print(f"  {renderer.name:32} S0 to S3 {layers}, {samples[i]} samples in {seconds[i]:.2f} s")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Renders the pictures of the README's gallery, and writes the table of them: seconds of rendering, and the relative error that the
-# program itself estimates. Takes about twelve minutes on two cores.
+# program itself estimates. Takes about thirteen minutes on two cores.
 #
 #   tools/make_gallery.sh            pictures to scenes/gallery, the table into README.md, between its two marks
 #   tools/make_gallery.sh FOLDER     all of it to another folder, the table as FOLDER/README.md
@@ -33,6 +33,8 @@ pictures=(
     "materials    184x115  30 auto"
     "lamps        184x104  30 auto"
     "many_lights  160x100  30 auto"
+    "retarders    192x96   20 backward"
+    "glass_table  168x112  30 backward"
 )
 
 scratch=$(mktemp -d)
