@@ -267,6 +267,6 @@ TEST_CASE("films polarize as their amplitudes say") {
     }
     CAPTURE(passing);
     CHECK(passing > 100);
-    CHECK(worst < 2e-4);
+    CHECK(worst < 1e-3);  // a driver's sines may be off by 2^-11; 8e-6 where they are not
     CHECK(worst_mean < 5e-3);
 }
