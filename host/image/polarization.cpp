@@ -29,22 +29,21 @@ bool has_stokes(const Image& image) {
     return true;
 }
 
-glm::dvec4 stokes_at(const Image& image, size_t pixel) {
-    glm::dvec4 stokes(0);
+std::vector<glm::dvec4> stokes_vectors(const Image& image) {
+    std::vector<glm::dvec4> stokes(pixel_count(image));
     for (size_t k = 0; k < 4; ++k) {
-        glm::dvec3 rgb;
-        for (int c = 0; c < 3; ++c)
-            rgb[c] =
-                double(plane(image, size_t(find_channel(image, std::string(layers[k]) + "RGB"[c])))[pixel]);
-        stokes[int(k)] = luminance(rgb);
+        std::array<std::span<const float>, 3> rgb;
+        for (size_t c = 0; c < 3; ++c)
+            rgb[c] = plane(image, size_t(find_channel(image, std::string(layers[k]) + "RGB"[c])));
+        for (size_t i = 0; i < stokes.size(); ++i)
+            stokes[i][int(k)] = luminance(glm::dvec3(rgb[0][i], rgb[1][i], rgb[2][i]));
     }
     return stokes;
 }
 
 void add_polarization(Image& image) {
     std::vector<PolarizationState> states;
-    states.reserve(pixel_count(image));
-    for (size_t i = 0; i < pixel_count(image); ++i) states.push_back(polarization_state(stokes_at(image, i)));
+    for (const glm::dvec4& stokes : stokes_vectors(image)) states.push_back(polarization_state(stokes));
     add_channels(image, {"polarization.DoLP", "polarization.AoLP", "polarization.DoCP"},
                  std::span(&states[0].linear, 3 * states.size()), 3);
 }

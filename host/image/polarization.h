@@ -17,7 +17,7 @@ struct PolarizationState {
 PolarizationState polarization_state(const glm::dvec4& stokes);
 
 bool has_stokes(const Image& image);
-glm::dvec4 stokes_at(const Image& image, size_t pixel);  // of an image that has them
+std::vector<glm::dvec4> stokes_vectors(const Image& image);  // of the pixels of an image that has them
 
 // Adds polarization.DoLP, polarization.AoLP and polarization.DoCP to an image that has S1 to S3.
 void add_polarization(Image& image);

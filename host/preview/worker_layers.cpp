@@ -22,13 +22,6 @@ std::vector<glm::vec3> read_colors(const Image& image, const std::vector<std::st
     return result;
 }
 
-std::vector<glm::vec4> read_stokes(const Image& image) {
-    std::vector<glm::vec4> result;
-    result.reserve(pixel_count(image));
-    for (size_t i = 0; i < pixel_count(image); ++i) result.push_back(glm::vec4(stokes_at(image, i)));
-    return result;
-}
-
 // As in the relMSE (host/image/compare.h), of luminances.
 std::vector<glm::vec3> relative_errors(const std::vector<glm::vec3>& radiance,
                                        const std::vector<glm::vec3>& errors) {
@@ -102,7 +95,10 @@ void PreviewWorker::publish(const PreviewRequest& request) {
     picture->step = step_;
     renderer_->read_picture(picture->radiance);
     picture->layer = request.layer;
-    if (renderer_->is_stokes()) picture->stokes = read_stokes(renderer_->develop(false));
+    if (renderer_->is_stokes()) {
+        const auto stokes = stokes_vectors(renderer_->develop(false));
+        picture->stokes.assign(stokes.begin(), stokes.end());
+    }
     if (request.layer != Layer::radiance) picture->shown = develop_layer(request.layer, *picture);
     picture->errors = errors_;
     if (request.wants_depth) {

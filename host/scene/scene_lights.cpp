@@ -161,7 +161,7 @@ void SceneCompiler::measure_lights() {
     out_.features.light_tree = tree.is_tree;
     out_.features.infinite_light_count = tree.infinite_count;
     upload("Lights", sorted_lights);
-    upload("LightStokesTable", sorted_stokes);
+    if (out_.features.polarized_lights) upload("LightStokesTable", sorted_stokes);
     upload("LightNodes", tree.nodes);
     upload("LightTrails", tree.trails);
     upload("LightEmission", build_emission_choices(powers));

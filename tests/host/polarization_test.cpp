@@ -34,8 +34,8 @@ TEST_CASE("an image with S1 to S3 gets layers of degree and angle, of luminances
     add_channels(image, {"S2.R", "S2.G", "S2.B"}, std::vector<float>{0.5f, 0.5f, 0.5f, 0, 0, 0}, 3);
     add_channels(image, {"S3.R", "S3.G", "S3.B"}, std::vector<float>{0.2f, 0.2f, 0.2f, 0, 0, 0}, 3);
     REQUIRE(has_stokes(image));
-    CHECK(stokes_at(image, 0)[2] == doctest::Approx(0.5));
-    CHECK(stokes_at(image, 1)[1] == doctest::Approx(5 * 0.2126 + 0.7152));
+    CHECK(stokes_vectors(image)[0][2] == doctest::Approx(0.5));
+    CHECK(stokes_vectors(image)[1][1] == doctest::Approx(5 * 0.2126 + 0.7152));
     add_polarization(image);
     const auto value = [&](const char* name, size_t pixel) {
         return plane(image, size_t(find_channel(image, name)))[pixel];

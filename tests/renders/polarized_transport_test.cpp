@@ -11,6 +11,17 @@ using namespace etendue;
 
 constexpr double pi = std::numbers::pi;
 
+namespace {
+
+// As add_room(), its walls of rough gold.
+void add_gold_room(SceneBuilder& s) {
+    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
+    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
+    s.perspective(1.2, at(0, 0, 1.95));
+}
+
+}  // namespace
+
 // Light of a point source reaches the floor through sheets, by shadow rays, and from mirrors, glass and gold
 // by hits, merging and connections; the camera looks through a sheet of its own.
 TEST_CASE("polarized light: all algorithms agree") {
@@ -44,9 +55,7 @@ TEST_CASE("polarized light: all algorithms agree") {
 // A wrong sign of all rows' S3 shows nowhere but where they meet the vectors of forward paths.
 TEST_CASE("circular light among metals: all algorithms agree") {
     SceneBuilder s;
-    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
-    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
-    s.perspective(1.2, at(0, 0, 1.95));
+    add_gold_room(s);
     add_lamp(s, 1.5);
     s.rectangle(2, 2, s.surface(polarizer(0)), hanging(0, 1.9, 0));
     s.rectangle(2, 2, s.surface(wave_plate(pi / 4, pi / 2)), hanging(0, 1.88, 0));
@@ -75,9 +84,7 @@ TEST_CASE("polarized light in fog: all algorithms agree") {
 
 TEST_CASE("polarized lights among metals: all algorithms agree") {
     SceneBuilder s;
-    const int gold = s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}, {"alpha", 0.5}});
-    add_box(s, {4, 4, 4}, gold, true, at(0, 0, 0));
-    s.perspective(1.2, at(0, 0, 1.95));
+    add_gold_room(s);
     s.rectangle(1.5, 1.5,
                 s.material({{"surface", {{"class", "absorber"}}},
                             {"emission", {{"radiance", 2}, {"stokes", {1, 0.2, 0.4, 0.8}}}}}),
