@@ -67,6 +67,11 @@ std::string first_error(const char* log) {
     return std::string(text);
 }
 
+// Of SPIR-V as glslang writes it. Kernels that are within the budget of the schedules' (kernel_size_test.cpp)
+// have at most 460 kB then; on one of 930 the optimiser takes a minute, follows values through blocks by
+// recursion, and overflows the stack. Larger ones stay as they are.
+constexpr uint64_t most_optimized_bytes = 640 << 10;
+
 constexpr uint64_t most_cache_bytes = 512 << 20;
 constexpr uint64_t file_bytes = 4096;  // that a file takes at least
 
@@ -198,7 +203,7 @@ CompiledShader compile_shader(const ShaderSources& sources, const std::string& n
     glslang::SpvOptions spv_options;
     spv_options.disableOptimizer = true;
     glslang::GlslangToSpv(*program.getIntermediate(EShLangCompute), result.spirv, &spv_options);
-    if (options.optimize) optimize(result.spirv);
+    if (options.optimize && result.spirv.size() * 4 <= most_optimized_bytes) optimize(result.spirv);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (!result.file.empty()) write_cached(result.file, result.spirv.data(), result.spirv.size() * 4);
     return result;

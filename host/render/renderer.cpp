@@ -91,21 +91,28 @@ RenderCounters counters_from_json(const nlohmann::json& json) {
 
 // Measured on lavapipe (Mesa 25): state in registers always wins, by 1.1 (a thousand lights) to 2.8
 // (materials), also where kernels hold seven classes or scenes have 50,000 triangles; but one kernel of
-// everything may be larger than drivers compile while one waits. A kernel for each class never won there (30
-// % slower, Mesa 25 and 22.3), and takes longer to compile: it is left to
-// --schedule. On a GPU long traversals of few lanes hold up the shading of all: there the hierarchy should
-// fit in the cache, and few classes share a kernel. A bent ray takes many steps, each of which would be a
-// bounce with its kernels.
-Schedule choose_schedule(Device& device, Scene& scene, const Techniques& techniques) {
-    if (scene.features.bending) return Schedule::fused;
+// everything may be larger than drivers compile while one waits. A kernel for each class never won there
+// (Mesa 25 and 22.3: 30 % slower, and as much longer to compile in all): it is for scenes whose classes
+// together exceed the budget. On a GPU long traversals of few lanes hold up the shading of all: there the
+// hierarchy should fit in the cache, and few classes share a kernel. A bent ray takes many steps, each of
+// which would be a bounce with its kernels.
+Schedule choose_schedule(Device& device, Scene& scene, Techniques& techniques) {
     if (device.description.type == "CPU") {
         const uint64_t most = scene.features.polarization ? most_polarized_kernel_bytes
                               : techniques.forward        ? most_kernel_bytes
                                                           : most_backward_kernel_bytes;
-        const uint64_t bytes =
-            spirv_bytes(device, scene, "kernels/trace_paths.comp", techniques.backward_defines());
-        return bytes <= most ? Schedule::fused : Schedule::wavefront;
+        const auto fits = [&](const char* file, const std::string& defines) {
+            return spirv_bytes(device, scene, file, defines) <= most;
+        };
+        const char* scatter = "kernels/scatter_paths.comp";
+        const std::string defines = techniques.backward_defines();
+        if (fits("kernels/trace_paths.comp", defines)) return Schedule::fused;
+        if (fits(scatter, defines)) return Schedule::wavefront;
+        for (const std::string& of_class : Wavefront::defines_by_class(scene, defines))
+            techniques.connect = techniques.connect && fits(scatter, of_class);
+        return Schedule::by_class;
     }
+    if (scene.features.bending) return Schedule::fused;
     size_t classes = 0;
     for (const auto& [interface, used] : scene.classes)
         if (interface != Interface::phase) classes += used.size();  // those are a line each
@@ -133,6 +140,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     settings_.stokes &= scene.features.polarization;
     Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
     techniques.stokes = settings_.stokes;
+    techniques.connect &= settings_.connect;
     film_ =
         std::make_unique<Film>(device, settings.width, settings.height, techniques.merge, settings_.stokes);
     if (!settings.restarts_first) film_->clear();
@@ -146,6 +154,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     }
     if (schedule_ == Schedule::automatic)
         schedule_ = settings_.schedule = choose_schedule(device, scene, techniques);
+    settings_.connect = techniques.connect;
     start_media_ = std::make_unique<StartMedia>(device, scene, techniques.forward);
     start_media_->find(settings.receiver, film_aspect());
     film["StartMedia"] = &start_media_->buffer();

@@ -41,6 +41,7 @@ struct RenderSettings {
     uint32_t seed = 0;
     Algorithm algorithm = Algorithm::automatic;
     Schedule schedule = Schedule::automatic;
+    bool connect = true;                    // bidirectional: vertices are connected, beside all else
     double forward_paths = 1;               // a pixel and pass, where there are any
     std::optional<AlgorithmChoice> choice;  // of an earlier run: taken instead of algorithm and forward_paths
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
@@ -86,8 +87,10 @@ struct FilmState {
 constexpr uint64_t most_backward_kernel_bytes = 224 << 10, most_kernel_bytes = 256 << 10,
                    most_polarized_kernel_bytes = 320 << 10;
 
+// What `techniques` are run by on the device. Where not even a kernel for each class would be within the
+// budget, because it knows the classes at both ends of connections, vertices are no longer connected.
 struct Techniques;
-Schedule choose_schedule(Device& device, Scene& scene, const Techniques& techniques);
+Schedule choose_schedule(Device& device, Scene& scene, Techniques& techniques);
 
 // Making one compiles only what no renderer on the device has compiled yet: for another size of the image,
 // make another one, with the first one's choice in the settings.

@@ -25,6 +25,16 @@ uint32_t Wavefront::groups(const Kernel& kernel, uint32_t items, uint32_t items_
     return std::max(2u, (items + size - 1) / size);
 }
 
+std::vector<std::string> Wavefront::defines_by_class(const Scene& scene, const std::string& defines) {
+    const std::vector<const ClassInfo*>& classes = scene.classes.at(Interface::surface);
+    std::vector<std::string> all;
+    for (const ClassInfo* info : classes)
+        all.push_back(defines + fmt::format("#define SCATTER_CLASS_COUNT {}\n#define SCATTER_CLASS {}\n"
+                                            "#define ONLY_SURFACE_CLASS {}\n",
+                                            classes.size(), all.size(), info->tag));
+    return all;
+}
+
 Wavefront::Wavefront(Device& device, Scene& scene, Direction direction, const Techniques& techniques,
                      uint32_t slots, bool by_class, const BufferTable& buffers)
     : slots_(slots), items_a_lane_(device.description.type == "CPU" ? 16 : 1) {
@@ -72,21 +82,19 @@ void Wavefront::make_scatter_kernels(Device& device, Scene& scene, BufferTable t
         return;
     }
     const size_t count = classes.size();
+    const std::vector<std::string> scattered = defines_by_class(scene, defines);
     class_queues_ = Buffer(device, uint64_t(slots_) * 4 * count, "ClassQueues");
     class_counts_ = Buffer(device, bounces_a_submission * 4 * count, "ClassCounts");
     table["ClassQueues"] = &class_queues_;
     table["ClassCounts"] = &class_counts_;
     std::vector<std::string> tags;
     for (const ClassInfo* info : classes) tags.push_back(fmt::format("{}u", info->tag));
-    const std::string shared = defines + fmt::format("#define SCATTER_CLASS_COUNT {}\n", count);
     sort_hits_ = make_kernel(device, scene, "kernels/sort_hits.comp", table,
-                             shared + fmt::format("const uint SCATTER_CLASS_TAGS[{0}] = uint[{0}]({1});\n",
-                                                  count, fmt::join(tags, ", ")));
-    for (size_t c = 0; c < count; ++c)
-        scatter_paths_.push_back(
-            make_kernel(device, scene, file, table,
-                        shared + fmt::format("#define SCATTER_CLASS {}\n#define ONLY_SURFACE_CLASS {}\n", c,
-                                             classes[c]->tag)));
+                             defines + fmt::format("#define SCATTER_CLASS_COUNT {0}\n"
+                                                   "const uint SCATTER_CLASS_TAGS[{0}] = uint[{0}]({1});\n",
+                                                   count, fmt::join(tags, ", ")));
+    for (const std::string& of_class : scattered)
+        scatter_paths_.push_back(make_kernel(device, scene, file, table, of_class));
 }
 
 void Wavefront::trace(CommandList& commands, uint32_t paths, const std::vector<PushValue>& values,

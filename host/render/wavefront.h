@@ -29,6 +29,8 @@ class Wavefront {
                KernelTimings& timings);
     void warm_up(CommandList& commands);  // dispatches every kernel on nothing
 
+    // A kernel's `defines` with those of its class, for each class of surfaces in use.
+    static std::vector<std::string> defines_by_class(const Scene& scene, const std::string& defines);
     // Groups of a dispatch over `items`, as many a lane.
     static uint32_t groups(const Kernel& kernel, uint32_t items, uint32_t items_a_lane);
 

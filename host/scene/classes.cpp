@@ -289,7 +289,7 @@ std::string first_sentence(const std::string& comment) {
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
                          const std::map<std::string, ClassConstants>& constants) {
     // A kernel for one class of surfaces sets ONLY_SURFACE_CLASS to its tag: the dispatch then has one case.
-    // ALL_SURFACE_CLASSES are those of the surfaces that it meets besides.
+    // MET_SURFACE_CLASSES are those between whose directions it evaluates: all where vertices are connected.
     std::string rows, one;
     for (const ClassInfo* info : classes) {
         const std::string row = fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
@@ -299,8 +299,10 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
     }
     std::string text = fmt::format("#define {}(X){}\n", interface.table, rows);
     if (interface.interface == Interface::surface)
-        text = fmt::format("#ifdef ONLY_SURFACE_CLASS\n{}#else\n{}#endif\n#define ALL_{}(X){}\n", one, text,
-                           interface.table, rows);
+        text = fmt::format(
+            "#ifdef ONLY_SURFACE_CLASS\n{}#else\n{}#endif\n"
+            "#if CONNECT_VERTICES\n#define MET_{}(X){}\n#else\n#define MET_{} {}\n#endif\n",
+            one, text, interface.table, rows, interface.table, interface.table);
     for (const ClassInfo* info : classes) {
         const auto known = constants.find(info->name);
         if (known != constants.end()) text += known->second.macros;

@@ -1,8 +1,9 @@
-// Where paths of both directions meet: forward paths keep their vertices, backward ones connect to them and merge with them.
+// Where paths of both directions meet: forward paths keep their vertices, backward ones connect to them and merge with them, or
+// only the one or the other: a kernel that connects knows the classes of both ends, one that merges that of its own vertex.
 #include "features/defaults.glsl"
 
 #if FORWARD
-#if CONNECT_VERTICES
+#if CONNECT_VERTICES || MERGE_VERTICES
 #include "stages/store_vertex.glsl"
 layout(scalar, set = 0) writeonly buffer PathEnds { uvec2 path_ends[]; };  // per path: last stored vertex, their number
 void end_forward_path(uint path_index, Path path) { path_ends[path_index] = path.vertices; }
@@ -26,9 +27,20 @@ void trace_shadows(ShadowRay shadow, ShadowRay vertex_shadow, inout Received rad
 #else
 #define trace_shadows(shadow, vertex_shadow, radiance, counters) radiance += trace_shadow(shadow, counters)
 #include "lib/events.glsl"
-struct Connection { vec3 wi; };
-#define no_connection(wi) Connection(wi)
-#define choose_vertex(random, p, s) Connection(vec3(0))
+#include "lib/light_vertices.glsl"
+struct Connection {
+    vec3 wi, direction;
+    LightVertex y;
+};
+Connection no_connection(vec3 wi) {
+    Connection c;
+    c.wi = wi;
+    return c;
+}
+#define choose_vertex(random, p, s) no_connection(vec3(0, 0, 1))
+#define connects_to(c, here) false
+#define forward_point(c, s) s
+#define connect_vertices(path, p, s, mis, c, here, there, pair) no_shadow_ray()
 #endif
 
 #if MERGE_VERTICES

@@ -102,7 +102,7 @@ Scattering no_scattering() { return scattering_of(no_surface_pair()); }
 // Light comes from wo where paths carry power, else from wi.
 #define MUELLER_ALONG(name, r, c, wo, wi, event) name##_mueller(r, c, c.importance ? wo : wi, c.importance ? wi : wo, event)
 
-// Of a surface of any class, in a kernel for one class too.
+// Of a surface of any class, in a kernel for one class too where that connects vertices.
 Scattering surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
     Scattering result = no_scattering();
     switch (record_tag(ref)) {
@@ -113,7 +113,7 @@ Scattering surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
         keep_mueller(result.mueller, MUELLER_ALONG(name, r, c, wo, wi, 0u));     \
         break;                                                                   \
     }
-        ALL_SURFACE_CLASSES(CASE)
+        MET_SURFACE_CLASSES(CASE)
 #undef CASE
     }
     return result;

@@ -1,8 +1,8 @@
 // Where backward paths meet forward ones: a vertex is connected with one forward vertex and merged with those around it.
 //
 // Both ask how surfaces of any class scatter, the one at the forward vertex, the other at the backward one for each candidate: in
-// one loop, so that the code of all classes stands once.
-#include "stages/connect_vertices.glsl"
+// one loop, so that the code of all classes stands once. (Connections: stages/connect_vertices.glsl, or features/meeting.glsl says
+// that there are none.)
 #include "stages/merge_vertices.glsl"
 
 // `here`: scattering at the backward vertex towards the forward one.

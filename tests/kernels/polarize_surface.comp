@@ -18,7 +18,7 @@ Mueller mueller_of(uint ref, SurfaceContext c, Query q) {
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) \
     case tag: result = name##_mueller(name##_resolve(name##_record(record_index(ref)), c), c, q.from, q.to, q.event); break;
-        ALL_SURFACE_CLASSES(CASE)
+        SURFACE_CLASSES(CASE)
 #undef CASE
     }
     return result;

@@ -15,6 +15,7 @@ struct Comparison {
     double largest_error = 0.005;  // that these may have, else the comparison says little
     float merge_radius = 0.1f;     // bias of merging grows with its square
     bool stokes = false;           // S0 to S3 are compared
+    bool unconnected = false;      // bidirectional rays whose vertices are not connected, too
 };
 
 // Two sets of images of one scene, by what one is called. Pixels and tiles of 8 x 8 by Student's t over the
@@ -59,6 +60,8 @@ inline void check_against_backward(Scene& scene, const Comparison& c) {
     };
     check(Algorithm::forward, c.forward, 1001);
     check(Algorithm::bidirectional, c.bidirectional, 2001);
+    plan.connect = false;
+    if (c.unconnected) check(Algorithm::bidirectional, c.bidirectional, 3001);
 }
 
 inline void check_against_backward(const SceneBuilder& builder, const Comparison& c = {},

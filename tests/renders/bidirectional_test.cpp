@@ -146,6 +146,7 @@ TEST_CASE("algorithms agree: wide disks of merging under a slab of glass") {
     c.backward = 16, c.forward = 0, c.bidirectional = 2;
     c.tolerance = 0.004;  // bias of the radius
     c.merge_radius = 1;
+    c.unconnected = true;
     check_against_backward(s, c);
 }
 

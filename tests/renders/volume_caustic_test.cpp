@@ -23,6 +23,7 @@ const Window window = {0, pixels / 2 + 2, pixels, pixels / 2 - 2};
 struct Haze {
     json medium;
     double alpha = 0;  // of ball and plate
+    bool connect = true;
 };
 
 json coloured_haze() {
@@ -55,8 +56,9 @@ SceneBuilder ball_in_haze(const Haze& haze, bool behind_plate) {
 }
 
 Estimates render(const SceneBuilder& s, const std::filesystem::path& file, Algorithm algorithm, double radius,
-                 uint32_t passes) {
+                 uint32_t passes, bool connect = true) {
     RenderPlan plan;
+    plan.connect = connect;
     plan.width = plan.height = pixels;
     plan.seeds = 12, plan.passes = passes, plan.algorithm = algorithm;
     plan.first_seed = algorithm == Algorithm::forward ? 1 : 1001;
@@ -72,7 +74,7 @@ void check_caustic(const Haze& haze, double radius, double loss,
     const Estimates expected = render(ball_in_haze(haze, false), file, Algorithm::forward, radius, 12);
     for (const bool behind_plate : {false, true}) {
         const Estimates seen = render(ball_in_haze(haze, behind_plate), file, Algorithm::bidirectional,
-                                      radius, behind_plate ? 64 : 12);
+                                      radius, behind_plate ? 64 : 12, haze.connect);
         const double factor = behind_plate ? plate : 1;
         for (int c = 0; c < 3; ++c) {
             const WindowMean theirs = window_mean(expected, window, c), ours = window_mean(seen, window, c);
@@ -96,6 +98,7 @@ TEST_CASE("a caustic in haze, through smooth glass: merging brings what forward 
 
 TEST_CASE("a caustic in haze, through glass that is nearly smooth: connections and merging share it") {
     check_caustic({coloured_haze(), 0.02}, 0.05, 0.005);
+    check_caustic({coloured_haze(), 0.02, false}, 0.05, 0.005);
 }
 
 TEST_CASE("a caustic in haze whose density varies" * doctest::test_suite("long")) {

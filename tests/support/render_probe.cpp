@@ -195,6 +195,7 @@ RenderSettings settings_of(const Scene& scene, const RenderPlan& plan) {
     settings.schedule = plan.schedule;
     settings.seed = plan.first_seed;
     settings.algorithm = plan.algorithm;
+    settings.connect = plan.connect;
     settings.forward_paths = plan.forward_paths;
     settings.merge_radius = plan.merge_radius;
     if (plan.vertex_bytes) settings.vertex_bytes = plan.vertex_bytes;

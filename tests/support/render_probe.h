@@ -66,6 +66,7 @@ struct RenderPlan {
     Schedule schedule = Schedule::automatic;
     uint32_t first_seed = 1;
     Algorithm algorithm = Algorithm::backward;
+    bool connect = true;        // as in RenderSettings
     double forward_paths = 1;   // a pixel and pass
     float merge_radius = 1;     // as in RenderSettings
     uint64_t vertex_bytes = 0;  // 0 = as in RenderSettings
