@@ -52,7 +52,8 @@
     X(1, Homogeneous, homogeneous)      \
     X(2, Grid, grid)                    \
     X(3, GradientIndex, gradient_index) \
-    X(4, FishEye, fish_eye)
+    X(4, FishEye, fish_eye)             \
+    X(5, Uniaxial, uniaxial)
 
 // folder phases/, contract interfaces/phase_function.glsl
 #define PHASE_CLASSES(X)                      \

@@ -60,6 +60,7 @@ void read_class(const std::string& text, ClassInfo& info) {
     HeadComment head = head_comment(text);
     info.summary = std::move(head.summary), info.example = std::move(head.example);
     info.says_polarization = text.find(info.name + "_mueller(") != std::string::npos;
+    info.is_crystal = text.find(info.name + "_crystal(") != std::string::npos;
     info.has_general_mueller = text.find("is_general") != std::string::npos;
     info.has_body_mueller = text.find("set_body(") != std::string::npos;
     info.polarizes = std::regex_search(text, std::regex(R"(#define \w+_POLARIZES\b)"));
@@ -310,6 +311,8 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         if (interface.interface == Interface::surface && !info->says_polarization)
             text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n",
                                 info->name);
+        if (interface.interface == Interface::medium && !info->is_crystal)
+            text += fmt::format("#define {}_crystal(r) isotropic_medium(1.0)\n", info->name);
         if (interface.interface == Interface::phase && !info->says_polarization)
             text += fmt::format("#define {}_mueller(r, cosine) depolarizing()\n", info->name);
         // All classes of an interface are views of one buffer, on one binding.

@@ -56,6 +56,7 @@ struct ClassInfo {
     std::string summary;               // the comment at the head of the file, without the example
     std::string example;               // as it stands there, JSON; may be empty
     bool says_polarization = false;    // NAME_mueller is there
+    bool is_crystal = false;           // NAME_crystal is there: it refracts doubly
     bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization
     bool has_body_mueller = false;     // light leaves its body (shaders/features/body_mueller.glsl)
     bool has_general_mueller = false;  // its matrices are not of two blocks (shaders/lib/stokes.glsl)

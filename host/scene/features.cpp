@@ -10,7 +10,7 @@ Features Features::everything() {
     Features f;
     f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.textures = true;
     f.media = f.scattering = f.bending = f.interfaces = f.straight = f.light_tree = true;
-    f.general_mueller = f.body_mueller = true;
+    f.general_mueller = f.body_mueller = f.crystals = true;
     f.body_count = most_bodies;
     f.light_count = 16;
     f.infinite_light_count = 2;
@@ -41,6 +41,7 @@ std::string Features::defines() const {
     define("SPECTRAL", spectral);
     define("HAS_POLARIZATION", polarization);
     define("HAS_GENERAL_MUELLER", general_mueller);
+    define("HAS_CRYSTALS", crystals);
     define("HAS_BODY_MUELLER", body_mueller);
     define("HAS_POLARIZED_LIGHTS", polarization && polarized_lights);
     define("HAS_DISPERSION", spectral && dispersion);

@@ -30,6 +30,7 @@ struct Features {
     bool body_mueller = false;      // a class polarizes what its body sends out
     bool general_mueller =
         false;                    // a class has matrices that are not of two blocks (shaders/lib/stokes.glsl)
+    bool crystals = false;        // some medium refracts doubly
     bool dispersion = false;      // some refractive index depends on the wavelength
     uint32_t spectrum_count = 0;  // room for so many
     bool independent_samples = false;  // hashes take the place of Sobol' points

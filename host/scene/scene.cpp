@@ -177,7 +177,8 @@ const ClassInfo& SceneCompiler::use_class(Interface interface, const ObjectDescr
     const auto place =
         std::lower_bound(used.begin(), used.end(), info, [](auto* a, auto* b) { return a->tag < b->tag; });
     if (place == used.end() || *place != info) used.insert(place, info);
-    out_.features.general_mueller |= info->has_general_mueller;
+    out_.features.general_mueller |= info->has_general_mueller || info->is_crystal;
+    out_.features.crystals |= info->is_crystal;
     out_.features.body_mueller |= info->has_body_mueller;
     return *info;
 }

@@ -71,6 +71,7 @@ class SceneCompiler {
     void rank_bodies();
     void ask_opacity();
     uint32_t medium_ref(const std::string& name, const std::string& where);
+    void check_crystal_face(const MaterialDescription& m);
     void add_textures();
 
     glm::vec3 mean_image_color(uint32_t image);

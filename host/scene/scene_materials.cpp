@@ -7,12 +7,30 @@
 
 namespace etendue {
 
+namespace {
+constexpr double smooth_alpha = 1e-4;  // below which a surface is smooth (shaders/lib/microfacet.glsl)
+}
+
 uint32_t SceneCompiler::medium_ref(const std::string& name, const std::string& where) {
     if (name.empty()) return no_record;
     const auto found = resolver_.media.find(name);
     if (found == resolver_.media.end())
         fail_input("{}: {} is not the name of a medium", message_place(in_, where), name);
     return found->second;
+}
+
+// Faces of crystals are made by shaders/features/crystals.glsl, which knows smooth ones.
+void SceneCompiler::check_crystal_face(const MaterialDescription& m) {
+    const auto is_crystal = [&](const MediumDescription& medium) {
+        return (medium.name == m.inside || medium.name == m.outside) &&
+               find_class(Interface::medium, medium.medium).is_crystal;
+    };
+    const auto crystal = std::find_if(in_.media.begin(), in_.media.end(), is_crystal);
+    if (crystal == in_.media.end()) return;
+    const nlohmann::json alpha = m.surface.parameters.value("alpha", nlohmann::json(0));
+    if (m.surface.class_name != "dielectric" || !alpha.is_number() || alpha > smooth_alpha)
+        fail_input("{}: is a face of the crystal {}; allowed there: the class dielectric with alpha 0",
+                   message_place(in_, m.surface.where), crystal->name);
 }
 
 // Materials that no object has are checked like all others, but leave nothing to compile.
@@ -31,6 +49,7 @@ void SceneCompiler::add_materials() {
         MaterialRecord record{};
         record.inside = medium_ref(m.inside, m.surface.where);
         record.outside = medium_ref(m.outside, m.surface.where);
+        check_crystal_face(m);
         if (m.double_sided) record.flags |= emits_both_sides;
         if (!m.inside.empty() || !m.outside.empty()) record.flags |= separates_media;
         record.emission_texture = record.normal_texture = no_record;

@@ -73,6 +73,9 @@
 #ifndef HAS_POLARIZATION
 #define HAS_POLARIZATION 0
 #endif
+#ifndef HAS_CRYSTALS
+#define HAS_CRYSTALS 0
+#endif
 #ifndef HAS_GENERAL_MUELLER
 #define HAS_GENERAL_MUELLER 0
 #endif

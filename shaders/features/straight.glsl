@@ -16,7 +16,7 @@ uint shadow_seed(ShadowRay shadow) {
 // Through the medium that the ray is in.
 void pass_medium(inout ShadowRay shadow, float distance) {
     if (shadow.around.medium == NO_RECORD) return;
-    MediumRay ray = MediumRay(shadow.origin, shadow.direction, distance);
+    MediumRay ray = MediumRay(shadow.origin, shadow.direction, distance, 0u);
     Passage passage = medium_pass(shadow.around.medium, ray, shadow_seed(shadow));
     shadow.contribution *= passage.transmittance;
     lessen_others(shadow, passage.mean);
@@ -47,7 +47,7 @@ Received follow_shadow_ray(ShadowRay shadow) {
         SurfacePoint p = locate(hit, shadow.origin, direction);
         Crossing sides = meet_faces(shadow.origin, direction, shadow.around, hit, p);
         if (is_there(sides)) {
-            if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u) return Received(0);
+            if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u || meets_crystal(sides)) return Received(0);
             ScatteringPoint s = scattering_point(p, direction, sides);
             shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
             polarize_passage(shadow, s);

@@ -13,6 +13,9 @@
 //   bool     NAME_bends(R r)                        its index varies in space: rays are bent, and it does not scatter. Only then:
 //   vec3     NAME_bending(R r, vec3 position)       half the gradient of the squared index of the hero wavelength, 1/m
 //   StepLimits NAME_step_limits(R r)                how long steps may be (lib/bent_step.glsl)
+//   Crystal  NAME_crystal(R r)                      may be left out: it refracts doubly, with these indices of the hero wavelength
+//                                                   (lib/crystal_waves.glsl); then it neither scatters nor bends rays, and its
+//                                                   NAME_pass knows the ray's mode
 //
 // Rays and positions are in world space. `seed`: for classes that need any number of random numbers; right in the mean over
 // all seeds. Passage.mean, FreePath.passage and the mean extinction serve to weigh ways to make a path against each other
@@ -22,6 +25,7 @@
 #include "features/spectrum.glsl"
 #include "lib/records.glsl"
 #include "lib/bent_step.glsl"
+#include "lib/crystal_waves.glsl"
 #include "lib/free_path.glsl"
 #include "interfaces/phase_function.glsl"
 
@@ -44,6 +48,17 @@ Passage medium_pass(uint ref, MediumRay ray, uint seed) {
     Passage result = Passage(Spectrum(1), 1.0);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_pass(name##_record(record_index(ref)), ray, seed); break;
+        MEDIUM_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+// Isotropic without an axis, and then without indices.
+Crystal medium_crystal(uint ref) {
+    Crystal result = isotropic_medium(1.0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_crystal(name##_record(record_index(ref))); break;
         MEDIUM_CLASSES(CASE)
 #undef CASE
     }

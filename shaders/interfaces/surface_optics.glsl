@@ -126,6 +126,7 @@ struct SurfaceEvent {
     BsdfSample next;
     float next_pdf_reverse;
     MEMBER_IF(HAS_POLARIZATION, Mueller next_mueller;)
+    MEMBER_IF(HAS_CRYSTALS, uint mode;)  // of the ray that goes on (features/crystals.glsl)
 };
 
 SurfaceEvent no_surface_event() {

@@ -7,7 +7,7 @@
 
 // Takes a path through its medium to what it hits, or to where it scatters before. True: it scatters, hit.t metres on.
 bool cross_medium(inout Path path, inout Hit hit) {
-    MediumRay ray = MediumRay(path.origin, path.direction, hit.t);
+    MediumRay ray = MediumRay(path.origin, path.direction, hit.t, mode_of(path));
     if (scatters_rays(path.around.medium)) return scatter_within(path, hit, ray);
     if (HAS_MEDIA == 1) {
         if (path.around.medium != NO_RECORD)
@@ -62,6 +62,7 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
     path.origin = origin_of_next(path, p, direction, straight);
     path.direction = direction;
     path.around = surroundings_towards(s, direction);
+    keep_mode(path, event.mode);
     record_departure();
     return true;
 }

@@ -5,6 +5,7 @@
 struct MediumRay {
     vec3 origin, direction;  // in world space; direction is unit
     float distance;          // m
+    uint mode;               // MODE_… within a crystal (lib/crystal_waves.glsl)
 };
 
 struct FreePath {

@@ -31,6 +31,7 @@ struct Path {
     Received radiance;    // collected so far
 #endif
     MEMBER_IF(HAS_POLARIZATION, Carried polarization;)  // features/polarization.glsl
+    MEMBER_IF(HAS_CRYSTALS, uint mode;)        // of the ray, within a crystal (features/crystals.glsl)
     MEMBER_IF(HAS_BENDING, Bend bend;)
     MEMBER_IF(HAS_SCATTERING, float passage;)  // of scattering media since the reference (features/weights.glsl)
     MEMBER_IF(BIDIRECTIONAL, float vcm;)       // features/mis.glsl

@@ -22,10 +22,12 @@ struct ScatteringPoint {
     Crossing sides;       // what is on the side of the normal and below it
     SurfaceContext context;
     bool disperses;       // wavelengths part here
+    MEMBER_IF(HAS_CRYSTALS, uint mode;)  // of the ray that comes, within a crystal
     uint phase;           // RecordRef; NO_RECORD at a surface
     float extinction;     // of an average lane, 1/m
 };
 #include "features/volumes.glsl"
+#include "features/crystals.glsl"
 
 // Do the two normals agree on which side of the surface a direction is?
 bool is_consistent(ScatteringPoint s, vec3 direction) {
@@ -49,6 +51,7 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, Crossing sides, boo
     s.sides = sides;
     s.context = unbent_context(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
     keep_mesh_frame(s.context, s.frame, unbent);
+    keep_mode(s, MODE_NONE);
     s.phase = NO_RECORD;
     s.extinction = 0.0;
     s.disperses = false;
@@ -127,7 +130,9 @@ float catch_density(ScatteringPoint s, vec3 direction) {
 
 // Scattering at a point of either kind, with directions in its frame (interfaces/surface_optics.glsl).
 
-bool is_delta_point(ScatteringPoint s) { return !in_volume(s) && surface_is_delta(s.surface, s.context); }
+bool is_delta_point(ScatteringPoint s) {
+    return !in_volume(s) && (meets_crystal(s.sides) || surface_is_delta(s.surface, s.context));
+}
 
 // Of a surface of any class, in a kernel for one class too.
 Scattering scattering_pair(ScatteringPoint s, vec3 wi) {
@@ -145,5 +150,7 @@ SurfaceEvent scattering_event(ScatteringPoint s, vec3 wi, vec3 second, uint aske
         event.next_pdf_reverse = event.next.pdf;
         keep_mueller(event.next_mueller, phase_pair(s, event.next.wi).mueller);
     }
+    keep_mode(event, s.mode);
+    if (meets_crystal(s.sides)) cross_crystal(event, s, u.z);
     return event;
 }

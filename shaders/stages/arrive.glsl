@@ -45,5 +45,7 @@ Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, 
 ScatteringPoint scattering_at(Path path, Arrival a) {
     if (HAS_SCATTERING == 1)
         if (a.scatters) return volume_scattering_point(a.p.position, path.direction, path.around, FORWARD == 1);
-    return met_point(a.p, path.direction, a.sides);
+    ScatteringPoint s = met_point(a.p, path.direction, a.sides);
+    keep_mode(s, path.mode);
+    return s;
 }

@@ -23,6 +23,7 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.depth = 0u;
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
     start_rows(path, receiver);
+    start_mode(path);
     start_bending(path);
     start_passage(path);
     start_weights(path, float(forward_pass.count) * ray.connect_pdf / (ray.density * float(size.x) * float(size.y)), 0.0);

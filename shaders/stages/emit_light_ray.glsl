@@ -27,6 +27,7 @@ Path emit_light_ray(uint index) {
     path.flags = PATH_STARTS;
     path.vertices = uvec2(NO_RECORD, 0u);
     start_stokes(path, light);
+    start_mode(path);
     start_bending(path);
     start_passage(path);
     start_forward_weights(path, density, ray.is_delta, light, ray.normal);

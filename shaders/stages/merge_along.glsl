@@ -24,7 +24,7 @@ float merged_length(Path path, float to_surface) {
 }
 
 Passage passage_along(Path path, float distance) {
-    return medium_pass(path.around.medium, MediumRay(path.origin, path.direction, distance), 0u);
+    return medium_pass(path.around.medium, MediumRay(path.origin, path.direction, distance, 0u), 0u);
 }
 
 // `path`: before its ray has crossed the medium; `free_path`: to where it scatters, or `to_surface`.

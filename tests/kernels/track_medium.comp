@@ -13,7 +13,7 @@ layout(push_constant) uniform Push {
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= count) return;
-    MediumRay ray = MediumRay(vec3(x, y, z), vec3(dx, dy, dz), distance);
+    MediumRay ray = MediumRay(vec3(x, y, z), vec3(dx, dy, dz), distance, 0u);
     uvec3 random = hash_3d(hash_3d(uvec3(i, seed, 1u)));
     FreePath f = medium_free_path(medium, ray, vec3(carried_r, carried_g, carried_b), vec2(random.xy >> 8) / 16777216.0, random.z);
     Passage p = medium_pass(medium, ray, hash_3d(uvec3(i, seed, 2u)).x);
