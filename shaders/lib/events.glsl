@@ -69,7 +69,8 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
 
 // Russian roulette on what the path still carries. Radiance that has entered a dense medium is scaled by 1 / ior² until it
 // leaves, which is no reason to end the path. Long paths that keep all they carry end neither where they scatter in a medium nor
-// where they are refracted (`passes`): light scatters thousands of times before it comes out, and glass may have as many faces.
+// where they are refracted nor within a crystal (`passes`): light scatters thousands of times before it comes out, glass may have
+// as many faces, and crystals keep some of what enters them for hundreds of reflections.
 bool survive_roulette(inout Path path, bool passes) {
     if (path.depth < 3u) return true;
     float carried = max_component(path.throughput);
@@ -87,7 +88,8 @@ bool survive_roulette(inout Path path, bool passes) {
 // After an event: does the path live on?
 bool continue_path(inout Path path, uint event, inout Counters counters) {
     float carried = luminance(path.throughput);
-    bool survives = survive_roulette(path, (event & (EVENT_TRANSMIT | EVENT_STRAIGHT)) == EVENT_TRANSMIT);
+    bool passes = (event & (EVENT_TRANSMIT | EVENT_STRAIGHT)) == EVENT_TRANSMIT || mode_of(path) != MODE_NONE;
+    bool survives = survive_roulette(path, passes);
 #if FORWARD
     counters.roulette += carried - (survives ? luminance(path.throughput) : 0.0);
 #endif
