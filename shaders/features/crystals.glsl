@@ -94,12 +94,23 @@ void cross_crystal(inout SurfaceEvent event, ScatteringPoint s, float u) {
     keep_mueller(event.next_mueller, crystal_mueller(f, first, two, s.context.importance, frame[1]));
 }
 
+// Stokes parameters S1 to S3 over S0 of a crystal's ray, and x of their frame: it swings across the plane of ray and axis, or in it.
+void crystal_polarization(vec3 ray, uint medium, uint mode, inout vec3 stokes, inout vec3 x) {
+    if (mode == MODE_NONE) return;
+    vec3 axis = medium_crystal(medium).axis;
+    vec3 e = mode == MODE_ORDINARY ? cross(ray, axis) : axis - dot(axis, ray) * ray;
+    float size = length(e);
+    x = size > 1e-6 ? e / size : stokes_axis(ray);
+    stokes = vec3(1, 0, 0);
+}
+
 #define start_mode(path) path.mode = MODE_NONE
 #define mode_of(path) path.mode
 #define keep_mode(holder, value) holder.mode = value
 #else
 #define meets_crystal(crossing) false
 #define cross_crystal(event, s, u)
+#define crystal_polarization(ray, medium, mode, stokes, axis)
 #define start_mode(path)
 #define mode_of(path) 0u
 #define keep_mode(holder, value)

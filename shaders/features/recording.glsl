@@ -1,4 +1,5 @@
 // What happens to a path, for kernels/record_paths.comp; other kernels keep none of it.
+#include "features/crystals.glsl"
 #include "lib/path.glsl"
 #include "lib/primitives.glsl"
 
@@ -21,6 +22,7 @@ void recorded_polarization(Path path, out vec3 stokes, out vec3 axis) {
     float carried = luminance(path.throughput);
     stokes = vec3(luminance(path.throughput * p.s1), luminance(path.throughput * p.s2), luminance(path.throughput * p.s3));
     stokes = carried > 0.0 ? stokes / carried : vec3(0);
+    crystal_polarization(path.direction, path.around.medium, mode_of(path), stokes, axis);
 }
 #else
 #define recorded_polarization(path, stokes, axis) (stokes = axis = vec3(0))

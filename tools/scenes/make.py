@@ -10,6 +10,7 @@ import textwrap
 from pathlib import Path
 
 from boxes import caustic_box, cornell_box
+from crystals import calcite
 from dispersion import prism, rainbow
 from example import example
 from furnaces import furnace_closed, furnace_rough, furnace_smooth, spheres
@@ -41,6 +42,7 @@ SCENES = [
     retarders,
     glass_table,
     fresnel_rhomb,
+    calcite,
     many_lights,
     furnace_smooth,
     furnace_rough,
