@@ -29,13 +29,16 @@ Crystal crystal_beside(ScatteringPoint s, bool above) {
 }
 
 #if HAS_POLARIZATION
+vec2 coherence(vec2 a, vec2 b) { return complex_product(a, conjugate(b)); }
+
 // Of light that goes the way of the ray, if the path carries power, else against it: those are D Mᵀ D, D = diag(1, 1, -1, 1). The
 // amplitudes are those of two waves, s and p, or of one of a crystal, whose Stokes vector is (1, 0, 0, 0).
 Mueller crystal_mueller(CrystalFace f, uint first, bool two, bool importance, vec3 axis) {
     Mueller m = depolarizing();
     m.from = m.to = axis;
     m.is_general = true;
-    vec2 j[4] = vec2[4](f.amplitudes[0][first], vec2(0), vec2(0), vec2(0));  // ss, sp, ps, pp: s of what goes by p of what comes, …
+    // s and p of what goes, by s and p of what comes: ss, sp, ps, pp.
+    vec2 j[4] = vec2[4](f.amplitudes[0][first], vec2(0), vec2(0), vec2(0));
     if (two) j[2] = f.amplitudes[0][first + 1u];
     if (f.incident == 2u) j[1] = f.amplitudes[1][first];
     if (two && f.incident == 2u) j[3] = f.amplitudes[1][first + 1u];
@@ -44,10 +47,10 @@ Mueller crystal_mueller(CrystalFace f, uint first, bool two, bool importance, ve
         float s = column < 2 ? 0.5 : 0.0, p = column == 0 ? 0.5 : column == 1 ? -0.5 : 0.0;
         vec2 sp = column == 2 ? vec2(0.5, 0) : column == 3 ? vec2(0, -0.5) : vec2(0);
         if (f.incident == 1u) s = column == 0 ? 1.0 : 0.0, p = 0.0, sp = vec2(0);
-        float s_out = dot(j[0], j[0]) * s + dot(j[1], j[1]) * p + 2.0 * times(times(j[0], conjugate(j[1])), sp).x;
-        float p_out = dot(j[2], j[2]) * s + dot(j[3], j[3]) * p + 2.0 * times(times(j[2], conjugate(j[3])), sp).x;
-        vec2 sp_out = times(j[0], conjugate(j[2])) * s + times(j[1], conjugate(j[3])) * p +
-                      times(times(j[0], conjugate(j[3])), sp) + times(times(j[1], conjugate(j[2])), conjugate(sp));
+        float s_out = dot(j[0], j[0]) * s + dot(j[1], j[1]) * p + 2.0 * complex_product(coherence(j[0], j[1]), sp).x;
+        float p_out = dot(j[2], j[2]) * s + dot(j[3], j[3]) * p + 2.0 * complex_product(coherence(j[2], j[3]), sp).x;
+        vec2 sp_out = coherence(j[0], j[2]) * s + coherence(j[1], j[3]) * p + complex_product(coherence(j[0], j[3]), sp) +
+                      complex_product(coherence(j[1], j[2]), conjugate(sp));
         vec4 stokes = vec4(s_out + p_out, s_out - p_out, 2.0 * sp_out.x, -2.0 * sp_out.y);
         if (!two) stokes = vec4(stokes.x, 0, 0, 0);
         for (int row = 0; row < 4; ++row) {

@@ -20,14 +20,14 @@ void solve(inout vec2 m[4][6]) {
             if (dot(m[r][c], m[r][c]) > dot(m[pivot][c], m[pivot][c])) pivot = r;
         vec2 inverse = conjugate(m[pivot][c]) / max(dot(m[pivot][c], m[pivot][c]), 1e-37);
         for (int k = c; k < 6; ++k) {
-            vec2 value = times(m[pivot][k], inverse);
+            vec2 value = complex_product(m[pivot][k], inverse);
             m[pivot][k] = m[c][k];
             m[c][k] = value;
         }
         for (int r = 0; r < 4; ++r) {
             if (r == c) continue;
             vec2 factor = m[r][c];
-            for (int k = c; k < 6; ++k) m[r][k] -= times(factor, m[c][k]);
+            for (int k = c; k < 6; ++k) m[r][k] -= complex_product(factor, m[c][k]);
         }
     }
 }

@@ -5,6 +5,7 @@
 //   s ~ K / ne² + (1 / no² - 1 / ne²) (K · c) c        back: K = (ne² s + (no² - ne²) (s · c) c) / sqrt(ne² sin² + no² cos²)
 // by the angle between s and c. Rays go along s (Weidlich & Wilkie 2008, "Realistic Rendering of Birefringency in Uniaxial
 // Crystals", section 3).
+#include "lib/complex.glsl"
 #include "lib/constants.glsl"
 #include "lib/frames.glsl"
 
@@ -42,9 +43,6 @@ float squared_index(Crystal m, uint mode, vec3 ray) {
     return no2 * square(ne2 / square(ray_index(m, dot(ray, m.axis))));
 }
 
-// Complex numbers (real, imaginary), and vectors of them.
-vec2 times(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
-vec2 conjugate(vec2 a) { return vec2(a.x, -a.y); }
 struct ComplexVector { vec3 re, im; };
 ComplexVector cross_of(ComplexVector a, ComplexVector b) {
     return ComplexVector(cross(a.re, b.re) - cross(a.im, b.im), cross(a.re, b.im) + cross(a.im, b.re));

@@ -6,17 +6,9 @@
 // under D65, by 16 bands even in wavenumber: within a band the fringes, as cosines of the phase, are integrated in closed form,
 // and the rest is taken as even; thick films so show no fringes (the aim of Belcour & Barla 2017, whose Fourier series
 // of whole channels converges slowly where films are thin or reflect much).
+#include "lib/complex.glsl"
 #include "lib/constants.glsl"
 #include "features/spectrum.glsl"
-
-vec2 complex_quotient(vec2 a, vec2 b) {
-    return vec2(dot(a, b), a.y * b.x - a.x * b.y) / max(dot(b, b), 1e-30);
-}
-// The root with imaginary part <= 0, for a with such: waves exp(i omega t) that fade away from the surface.
-vec2 complex_root(vec2 a) {
-    float l = length(a);
-    return vec2(sqrt(max(0.5 * (l + a.x), 0.0)), -sqrt(max(0.5 * (l - a.x), 0.0)));
-}
 
 // A film as a wave meets it: admittances (Macleod) of s and p above it, in it and below it. c = cos(delta) of the phase thickness
 // delta, and sin(delta) over and times the film's admittance, are real, also where the wave in the film fades.
@@ -91,8 +83,6 @@ float film_reflectance(float cos_o, float n, float film, float thickness, vec2 b
     return min(0.5 * (reflected.x + reflected.y), 1.0);
 }
 
-vec2 complex_product(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
-vec2 conjugate(vec2 a) { return vec2(a.x, -a.y); }
 
 // Of light that a film reflects or lets through: |s|², |p|² and p conj(s), complex, of its amplitudes, in Verdet's signs (r_p is
 // less the admittances' one).
