@@ -12,7 +12,7 @@
 #include "host/render/techniques.h"
 #include "host/render/wavefront.h"
 #include "host/scene/classes.h"
-#include "tests/support/bsdf_files.h"
+#include "tests/renders/registered_surfaces.h"
 #include "tests/support/light_probe.h"
 #include "tests/support/render_probe.h"
 #include "tests/support/source_path.h"
@@ -76,24 +76,13 @@ void check_sizes(const std::filesystem::path& file, const std::string& name) {
     check_sizes(compile_test_scene(import_gltf(file)), name);
 }
 
-// What a scene says of a surface of the class, whose other parameters are by default.
-nlohmann::json surface_of(const std::string& name) {
-    nlohmann::json surface = {{"class", name}};
-    if (name == "measured") surface["file"] = "metal.bsdf";
-    if (name == "color_filter") surface["transmittance"] = 0.5;
-    if (name == "mueller") surface["matrix"] = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
-    return surface;
-}
-
 // The caustic box, with other things in the place of its glass sphere.
 struct ProbedScene {
     TemporaryFolder folder;
     nlohmann::json scene;
 
     ProbedScene() : scene(nlohmann::json::parse(read_text(source_path("scenes/caustic_box.gltf")))) {
-        GgxMetal metal;
-        metal.reflectance = [](double, size_t) { return 0.8; };
-        std::ofstream(folder / "metal.bsdf", std::ios::binary) << tensor_file_bytes(rgl_fields(metal, {}));
+        write_metal(folder.path);
         std::filesystem::copy_file(source_path("scenes/cloud.nrrd"), folder / "cloud.nrrd");
         scene["scenes"][0]["nodes"].erase(7);
     }
