@@ -147,3 +147,30 @@ TEST_CASE("a polarimeter measures glass at 60 degrees, gold at 45, and total ref
                     mirror_place(upright));
     });
 }
+
+// A crystal of one index is glass, whose phases are known: amplitudes of crystals, of waves that are drawn
+// with their polarization lost, have them at faces to isotropic media only.
+TEST_CASE("a polarimeter measures crystals whose two indices are one like glass") {
+    const auto crystal = [](double index, double absorption) {
+        return nlohmann::json{{"class", "uniaxial"},
+                              {"ior_ordinary", index},
+                              {"ior_extraordinary", index},
+                              {"axis", {0.3, 0.5, 0.8}},
+                              {"absorption_ordinary", absorption},
+                              {"absorption_extraordinary", absorption}};
+    };
+    const dvec3 slanted = coming(60 * degree), upright = coming(45 * degree);
+    check_measured(slanted, mirror(0.176571488, 0.001801938, 0), [&](SceneBuilder& s) {
+        s.medium("ink", crystal(1.5, 1e7));
+        s.rectangle(0.4, 0.4, s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "ink"}}),
+                    mirror_place(slanted));
+    });
+    check_measured(upright, mirror(1, 1, 36.869898 * degree), [&](SceneBuilder& s) {
+        s.medium("glass", {{"ior", 1.5}});
+        s.medium("void", crystal(1, 0));
+        s.rectangle(
+            0.4, 0.4,
+            s.material({{"surface", {{"class", "dielectric"}}}, {"outside", "glass"}, {"inside", "void"}}),
+            mirror_place(upright));
+    });
+}
