@@ -59,7 +59,8 @@
 #define PHASE_CLASSES(X)                      \
     X(1, Isotropic, isotropic)                \
     X(2, HenyeyGreenstein, henyey_greenstein) \
-    X(3, Rayleigh, rayleigh)
+    X(3, Rayleigh, rayleigh)                  \
+    X(4, Mie, mie)
 
 // folder elements/, contract interfaces/optical_element.glsl
 #define ELEMENT_CLASSES(X)

@@ -159,6 +159,8 @@ std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescriptio
             const glm::dmat4 m = placement.value_or(glm::dmat4(1.0));
             for (int column = 0; column < 4; ++column)
                 store(record, p.member.offset + 12 * column, glm::vec3(m[column]));
+        } else if (p.member.type == "MieRef") {  // stands behind what it is made from
+            store(record, p.member.offset, resolver.mie(info, record, object.where));
         } else if (p.from_scene) {
             const bool given = object.parameters.contains(p.member.name);
             if (!given && p.required)

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "host/measured/measured_bsdf.h"
+#include "host/mie/mie_table.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
 #include "host/lights/environment_map.h"
@@ -46,6 +47,10 @@ struct RecordResolver {
     };
     std::function<MeasuredRef(const std::filesystem::path& file)> measured =
         [](const std::filesystem::path&) { return MeasuredRef{}; };
+    // The table of a record of the class mie, whose parameters are filled already.
+    std::function<MieRef(const ClassInfo& info, const std::vector<std::byte>& record,
+                         const std::string& where)>
+        mie = [](const ClassInfo&, const std::vector<std::byte>&, const std::string&) { return MieRef{}; };
     // RecordRef of the phase function that stands at that place of the scene.
     std::function<uint32_t(const std::string& where)> phase = [](const std::string&) { return 0xFFFFFFFFu; };
     // Index of the table that a spectrum has where paths carry wavelengths.

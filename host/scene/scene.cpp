@@ -35,6 +35,8 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     };
     resolver_.world_point = [this](const glm::dvec3& point) { return glm::vec3(point - out_.center); };
     resolver_.measured = [this](const std::filesystem::path& file) { return add_measured(file); };
+    resolver_.mie = [this](const ClassInfo& info, const std::vector<std::byte>& record,
+                           const std::string& where) { return add_mie(info, record, where); };
 }
 
 Scene SceneCompiler::run() {
@@ -107,29 +109,6 @@ void SceneCompiler::add_class_files() {
         out_.registry->add_class_file(found->interface,
                                       file.file.is_absolute() ? file.file : in_.folder / file.file);
     }
-}
-
-// A parameter of type PhaseRef is itself an object of a class.
-void SceneCompiler::add_phases() {
-    std::vector<Added> added;
-    std::vector<std::string> places;
-    for (const MediumDescription& medium : in_.media)
-        for (const Parameter& p : find_class(Interface::medium, medium.medium).parameters) {
-            if (p.member.type != "PhaseRef") continue;
-            const nlohmann::json& given = medium.medium.parameters;
-            nlohmann::json value = given.contains(p.member.name) ? given[p.member.name] : p.default_value;
-            const std::string where = medium.medium.where + "/" + p.member.name;
-            if (!value.is_object() || !value.contains("class") || !value["class"].is_string())
-                fail_input("{}: allowed: {{\"class\": name of a phase function, …}}",
-                           message_place(in_, where));
-            const std::string name = value["class"];
-            value.erase("class");
-            added.push_back(add_record(Interface::phase, {name, value, where}));
-            places.push_back(where);
-        }
-    const auto refs = references(Interface::phase, added);
-    for (size_t i = 0; i < refs.size(); ++i) phases_[places[i]] = refs[i];
-    resolver_.phase = [this](const std::string& where) { return phases_.at(where); };
 }
 
 void SceneCompiler::add_media() {

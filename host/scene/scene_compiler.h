@@ -1,6 +1,6 @@
 // Builds a Scene from its description, step by step; each step needs what the ones before it made. Internal
-// to compile_scene: the steps stand in scene.cpp, scene_spectra.cpp, scene_materials.cpp, scene_geometry.cpp
-// and scene_lights.cpp.
+// to compile_scene: the steps stand in scene.cpp, scene_phases.cpp, scene_spectra.cpp, scene_materials.cpp,
+// scene_geometry.cpp and scene_lights.cpp.
 #pragma once
 #include "host/lights/light_tree.h"
 #include "host/scene/scene.h"
@@ -30,11 +30,14 @@ class SceneCompiler {
     Scene run();
 
   private:
-    // scene.cpp
+    // scene.cpp and scene_phases.cpp
     void find_registry();
     void add_class_files();
     void add_media();
-    void add_phases();     // of the media
+    void add_phases();  // of the media
+    SpectralValue index_of(const MediumDescription& medium);
+    MieRef add_mie(const ClassInfo& info, const std::vector<std::byte>& record, const std::string& where);
+    void upload_mie();
     void write_headers();  // for the classes used and the records added so far
     const ClassInfo& find_class(Interface interface, const ObjectDescription& object);
     const ClassInfo& use_class(Interface interface, const ObjectDescription& object);
@@ -119,6 +122,8 @@ class SceneCompiler {
     std::vector<DensityGridRecord> grids_;
     std::vector<glm::dmat4> grid_placements_;  // world_from_lattice
     bool uses_measured_ = false;
+    SpectralValue surrounding_;  // index of the medium whose phase function is being added
+    std::vector<std::shared_ptr<const MieTable>> mie_tables_;
     std::vector<MaterialRecord> materials_;
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
     std::map<std::string, uint32_t> phases_;                       // RecordRefs, by their places in the scene

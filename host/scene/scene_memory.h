@@ -11,6 +11,7 @@
 
 #include "host/gpu/buffer.h"
 #include "host/measured/measured_bsdf.h"
+#include "host/mie/mie_table.h"
 #include "host/scene/classes.h"
 #include "host/scene/density_bricks.h"
 #include "host/lights/environment_map.h"
@@ -40,6 +41,7 @@ struct SceneMemory {
         SpectralValue place;
     };
     std::map<std::filesystem::path, MeasuredFile> measured_files;
+    std::vector<std::shared_ptr<const MieTable>> mie_tables;  // of the last compilation
 
     uint64_t world_key = 0;
     World world;  // its lights are those of the last compilation

@@ -47,7 +47,7 @@ void SceneCompiler::scale_emission(MaterialRecord& record, float scale) {
 
 // Last of all: what measures lights and materials does so in colours.
 void SceneCompiler::choose_color() {
-    bool has_tables = false;
+    bool has_tables = out_.features.scattering && !mie_tables_.empty();
     for (const auto& [value, kind] : spectra_) has_tables |= value.table.has_value();
     out_.features.spectral =
         options_.color == ColorMode::spectral ||

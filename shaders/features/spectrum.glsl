@@ -138,6 +138,9 @@ void scale_spectrum(inout SpectrumRef ref, vec3 color) { ref.rgb *= color; }
 
 bool is_black(Spectrum s) { return max_component(s) <= 0.0; }
 
+// Exactly x where all lanes are x.
+float lane_mean(Spectrum s) { return s.x + dot(s - s.x, Spectrum(1.0 / float(LANES))); }
+
 // Four spectra, S0 to S3 of light (lib/stokes.glsl): columns of a matrix, so that sums and differences are written as those of one.
 Stokes scaled(Stokes s, Spectrum factor) { return Stokes(s[0] * factor, s[1] * factor, s[2] * factor, s[3] * factor); }
 Spectrum scaled(Spectrum s, Spectrum factor) { return s * factor; }

@@ -35,8 +35,9 @@ ScatteringPoint volume_scattering_point(vec3 position, vec3 direction, Surroundi
 }
 
 Scattering phase_pair(ScatteringPoint s, vec3 wi) {
-    float value = phase_value(s.phase, wi.z);
-    Scattering result = scattering_of(SurfacePair(Spectrum(value), value, value));
+    Spectrum value = phase_value(s.phase, wi.z);
+    float pdf = lane_mean(value);
+    Scattering result = scattering_of(SurfacePair(value, pdf, pdf));
     keep_mueller(result.mueller, phase_mueller(s.phase, s.context.importance ? s.wo : wi, s.context.importance ? wi : s.wo));
     return result;
 }
@@ -44,7 +45,9 @@ Scattering phase_pair(ScatteringPoint s, vec3 wi) {
 BsdfSample phase_event(ScatteringPoint s, vec2 u) {
     float cosine = phase_sample(s.phase, u.x);
     vec2 around = cos_sin_turns(u.y) * sqrt(max(0.0, (1.0 - cosine) * (1.0 + cosine)));
-    return BsdfSample(vec3(around, cosine), Spectrum(1), phase_value(s.phase, cosine), EVENT_TRANSMIT);
+    Spectrum value = phase_value(s.phase, cosine);
+    float pdf = lane_mean(value);
+    return BsdfSample(vec3(around, cosine), value / max(pdf, 1e-30), pdf, EVENT_TRANSMIT);
 }
 
 bool scatters_rays(uint medium) { return medium_scatters(medium); }

@@ -1,9 +1,10 @@
-// PhaseFunction: into which directions a point of a medium scatters light. It is the same for all wavelengths, depends on nothing
-// but the angle by which light is turned, and is sampled exactly. A class NAME defines, for its record R:
+// PhaseFunction: into which directions a point of a medium scatters light. It depends on nothing but the angle by which light is
+// turned and the wavelength, and is sampled exactly. A class NAME defines, for its record R:
 //
-//   float NAME_value(R r, float cosine)   1/sr, for light that is turned by an angle of that cosine (1 = it goes straight on);
-//                                         its integral over the sphere is 1
-//   float NAME_sample(R r, float u)       a cosine, for u in [0,1) spread evenly; directions around are equally likely
+//   Spectrum NAME_value(R r, float cosine)   1/sr, for light that is turned by an angle of that cosine (1 = it goes straight on);
+//                                            its integral over the sphere is 1 in every lane
+//   float NAME_sample(R r, float u)          a cosine, for u in [0,1) spread evenly, with the mean of the lanes as its density:
+//                                            lane_mean(value); directions around are equally likely
 //   Mueller NAME_mueller(R r, float cosine)   may be left out: what that does to polarization, with x across the plane of both
 //                                         directions (lib/stokes.glsl). Without it light is depolarized
 #include "lib/constants.glsl"
@@ -12,8 +13,9 @@
 
 #include "generated/phase_classes.glsl"
 
-float phase_value(uint ref, float cosine) {
-    float result = 0.0;
+// The density of phase_sample(), and of the way back, is lane_mean() of that.
+Spectrum phase_value(uint ref, float cosine) {
+    Spectrum result = Spectrum(0);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_value(name##_record(record_index(ref)), cosine); break;
         PHASE_CLASSES(CASE)

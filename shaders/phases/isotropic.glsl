@@ -7,5 +7,5 @@ struct Isotropic {
     uint unused;  // a record holds at least one member
 };
 
-float isotropic_value(Isotropic r, float cosine) { return 0.25 * INV_PI; }
+Spectrum isotropic_value(Isotropic r, float cosine) { return Spectrum(0.25 * INV_PI); }
 float isotropic_sample(Isotropic r, float u) { return 1.0 - 2.0 * u; }

@@ -7,7 +7,7 @@ struct Rayleigh {
     uint unused;  // a record holds at least one member
 };
 
-float rayleigh_value(Rayleigh r, float cosine) { return (3.0 / 16.0 * INV_PI) * (1.0 + cosine * cosine); }
+Spectrum rayleigh_value(Rayleigh r, float cosine) { return Spectrum((3.0 / 16.0 * INV_PI) * (1.0 + cosine * cosine)); }
 
 // The cosine c with (c³ + 3 c + 4) / 8 = u, by Cardano's formula (Frisvad 2011, "Importance sampling the Rayleigh phase
 // function"); the larger of the two roots first, so that no digits cancel.

@@ -51,16 +51,17 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
         float radius = merge_radius(y.position);
         Passage passage = passage_along(path, t);
         ScatteringPoint s = volume_scattering_point(y.position, path.direction, path.around, false);
-        float value = phase_value(s.phase, dot(decode_octahedral(y.direction), path.direction));
+        Spectrum value = phase_value(s.phase, dot(decode_octahedral(y.direction), path.direction));
+        float pdf = lane_mean(value);
         // As if the ray scattered there.
         Path met = path;
         lessen_passage(met, max(passage.mean, 1e-30));
         VertexMis mis = vertex_mis(met, volume_point(y.position, path.direction), s);
         if (!(mis.merging > 0.0)) continue;
-        float others = connects(path) * mis.vcm + value * mis.vc + CONNECTION_SHARE * y.vcm + value * y.vc;
+        float others = connects(path) * mis.vcm + pdf * mis.vc + CONNECTION_SHARE * y.vcm + pdf * y.vc;
         float weight = meeting_share(path, y.previous) * mis.merging / (mis.merging + others);
         if (t > sure) weight /= max(dot(share, passage_along(path, t - sure).transmittance), 1e-30);
-        Spectrum brought = passage.transmittance * y.throughput * (weight * value / (PI * square(radius)));
+        Spectrum brought = passage.transmittance * y.throughput * value * (weight / (PI * square(radius)));
         Received light =
             merged_light(brought, path, s, phase_mueller(s.phase, decode_octahedral(y.direction) * s.frame, s.wo), y);
         if (2.0 * dot(aside, aside) < square(radius)) inner += light;

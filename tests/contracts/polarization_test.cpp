@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "tests/contracts/mueller_frames.h"
 #include "tests/contracts/surface_configurations.h"
 #include "tests/support/source_path.h"
 #include "tests/support/surface_probe.h"
@@ -15,23 +16,6 @@ namespace {
 
 using glm::dvec3, glm::dvec4, glm::dmat4;
 constexpr double pi = std::numbers::pi, degree = pi / 180;
-
-// Rows first; m[0][0] = 1.
-dmat4 matrix(const MuellerAnswer& a, int lane = 0) {
-    dmat4 m;
-    for (int i = 0; i < 4; ++i)
-        for (int k = 0; k < 4; ++k) m[k][i] = double(a.m[4 * i + k][lane]) / a.m[0][lane];
-    return m;
-}
-
-// To a frame whose first axis is `axis`, from one where it is x, of light along `direction`.
-dmat4 rotator(const dvec3& x, const dvec3& axis, const dvec3& direction) {
-    const double c = glm::dot(x, axis), s = glm::dot(glm::cross(x, axis), direction), n = c * c + s * s;
-    dmat4 m(1);
-    m[1][1] = m[2][2] = (c * c - s * s) / n;
-    m[2][1] = 2 * s * c / n, m[1][2] = -m[2][1];
-    return m;
-}
 
 // Across the plane of incidence of a surface with normal z.
 dvec3 across(const dvec3& w) { return glm::normalize(glm::cross(dvec3(0, 0, 1), w)); }
@@ -46,10 +30,6 @@ ClassRegistry registry() {
     ShaderSources sources;
     sources.folder = source_path("shaders");
     return ClassRegistry(sources);
-}
-
-dvec3 direction(double theta, double phi) {
-    return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
 }
 
 MuellerQuery reflection(double theta, double phi = 0.7) {

@@ -1,0 +1,112 @@
+// Spheres that scatter each wavelength in another way, in whole images: colour and polarization of single
+// scattering against the computed phase function, and forward and bidirectional rays against backward ones.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "host/mie/mie_table.h"
+#include "host/spectra/color.h"
+#include "tests/renders/agreement_scenes.h"
+#include "tests/renders/algorithm_comparison.h"
+#include "tests/renders/sheets.h"
+#include "tests/support/source_path.h"
+
+using namespace etendue;
+using nlohmann::json;
+
+namespace {
+
+constexpr double pi = std::numbers::pi, sun = 3, scattered = 1e-4, absorbed = 1;
+
+json droplets(double radius, double variance) {
+    return {{"class", "mie"}, {"radius", radius}, {"variance", variance}, {"ior", 1.4}};
+}
+
+MieParameters parameters(double radius, double variance) {
+    return {radius, variance, constant_spectrum(1.4), constant_spectrum(0), constant_spectrum(1)};
+}
+
+// Light falls in at 40 degrees, from the left (-x), on a slab of thickness 1 that hardly scatters; seen from
+// above.
+SceneDescription slab() {
+    SceneBuilder s;
+    s.medium("haze", {{"scattering", scattered}, {"absorption", absorbed}, {"phase", droplets(4e-7, 0.05)}});
+    add_box(s, {6, 5, 1}, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "haze"}}), false,
+            at(0, 0, -0.5));
+    const double turned = -40 * pi / 180;
+    s.light({{"type", "directional"}, {"intensity", sun}},
+            {{0, 0, 0}, {0, std::sin(turned / 2), 0, std::cos(turned / 2)}});
+    s.orthographic(0.5, at(0, 0, 2));
+    return s.import();
+}
+
+Scene compiled(ColorMode color) {
+    SceneOptions options;
+    options.shaders = source_path("shaders");
+    options.color = color, options.polarization = PolarizationMode::on;
+    return compile_scene(test_device(), slab(), options);
+}
+
+MieElements slab_radiance(double nm) {
+    const double cosine = std::cos(40 * pi / 180), both = (scattered + absorbed) * (1 + 1 / cosine);
+    return direct_mie_elements(parameters(4e-7, 0.05), nm, -cosine) *
+           (sun * scattered * (1 - std::exp(-both)) / both);
+}
+
+void check_channels(const Estimates& e, const Window& window, const glm::dvec3& expected, double scale) {
+    for (int c = 0; c < 3; ++c) {
+        const WindowMean m = window_mean(e, window, c);
+        CAPTURE(c);
+        CAPTURE(m.mean / scale);
+        CAPTURE(expected[c] / scale);
+        CHECK(std::fabs(m.mean - expected[c]) < 5e-3 * scale + 4 * m.standard_error);
+        CHECK(m.standard_error < 0.01 * scale);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("droplets: single scattering has the colour and the polarization of the computed phase function") {
+    RenderPlan plan;
+    plan.width = plan.height = 16, plan.passes = 256, plan.stokes = true;
+    Scene scene = compiled(ColorMode::automatic);
+    const Estimates e = render_estimates(scene, plan);
+    const glm::dvec3 s0 =
+        rgb_of_radiance(white_light() * tabulate([](double nm) { return slab_radiance(nm).s11; }));
+    const glm::dvec3 s1 =
+        rgb_of_radiance(white_light() * tabulate([](double nm) { return slab_radiance(nm).b; }));
+    const double y = luminance(s0);
+    check_channels(e, {0, 0, 16, 16}, s0, y);
+    // The plane of both directions lies along the rows, so S1 > 0 is along it: across is -S1.
+    check_channels(e, {0, 16, 16, 16}, -s1, y);
+    check_channels(e, {0, 32, 16, 16}, glm::dvec3(0), y);
+    check_channels(e, {0, 48, 16, 16}, glm::dvec3(0), y);
+    CHECK(std::fabs(luminance(s1)) > 0.02 * y);
+    CHECK(std::fabs(s0.x - s0.z) > 0.02 * y);
+}
+
+TEST_CASE("droplets in colours: each channel has the phase function of its own wavelength") {
+    Scene scene = compiled(ColorMode::rgb);
+    RenderPlan plan;
+    plan.width = plan.height = 16, plan.passes = 64;
+    const Estimates e = render_estimates(scene, plan);
+    const glm::dvec3 s0(slab_radiance(611).s11, slab_radiance(549).s11, slab_radiance(464).s11);
+    check_channels(e, {}, s0, luminance(s0));
+}
+
+TEST_CASE("droplets in a room: all algorithms agree, Stokes vectors included") {
+    SceneBuilder s;
+    s.medium("fog", {{"class", "homogeneous"}, {"scattering", 0.5}, {"phase", droplets(6e-7, 0.05)}});
+    add_box(s, {4, 4, 4}, s.lambertian(0.5), true, at(0, 0, 0));
+    s.sphere(1.2, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}}), at(0, 0, -0.5));
+    s.perspective(1.2, at(0, 0, 1.95));
+    add_lamp(s, 0.5);
+    s.rectangle(0.3, 0.3, s.surface(wave_plate(0.9, 1.1)), at(0, 0, 1.8));
+    s.sphere(0.4, s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}}), at(0.2, -0.2, -0.6));
+    Comparison c;
+    c.backward = 64, c.forward = 64, c.bidirectional = 32;
+    c.largest_error = 0.015;
+    c.stokes = true;
+    check_against_backward(s, c);
+}
