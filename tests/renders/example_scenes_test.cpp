@@ -1,6 +1,7 @@
 // The scenes in scenes/ show what their own words (scenes[0].extras.expected) and scenes/README.md say.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <tuple>
@@ -54,6 +55,35 @@ TEST_CASE("example cloud: bright above, grey below, and its shadow on the plain"
     CHECK(base > shadow);
     CHECK(plain > 2 * shadow);
     CHECK(e.counters.depth_limit == 0);
+}
+
+TEST_CASE("example fogbow: a white bow at 38 degrees that is polarized along itself, and a glory") {
+    RenderPlan plan;
+    plan.width = plan.height = 160, plan.passes = 64, plan.seeds = 2, plan.stokes = true;
+    const Estimates e = render_estimates(import_gltf(example("fogbow")), plan);
+    // To the right and to the left of the middle, the median of which no rare bright pixel moves; S1 < 0
+    // swings along the bow there.
+    const auto at = [&](double degrees, uint32_t layer) {
+        std::vector<double> found;
+        const double radius = 80 * std::tan(degrees * 0.0174533) / std::tan(46 * 0.0174533);
+        for (int y = -12; y <= 12; ++y)
+            for (const int side : {-1, 1}) {
+                const double x = std::sqrt(std::max(0.0, radius * radius - y * y));
+                found.push_back(e.at(uint32_t(80 + side * x), layer * 160 + uint32_t(80 + y), 1));
+            }
+        std::nth_element(found.begin(), found.begin() + found.size() / 2, found.end());
+        return found[found.size() / 2];
+    };
+    const double bow = at(38, 0), inside = at(33, 0), outside = at(44, 0), second = at(30, 0),
+                 between = at(24, 0);
+    MESSAGE("bow ", bow, ", inside ", inside, ", outside ", outside, ", second ", second, ", within it ",
+            between);
+    CHECK(bow > 1.5 * inside);
+    CHECK(bow > 1.5 * outside);
+    CHECK(second > 1.04 * inside);
+    MESSAGE("S1 of the bow: ", at(38, 1) / bow);
+    CHECK(at(38, 1) / bow == doctest::Approx(-0.65).epsilon(0.12));
+    CHECK(e.at(80, 80, 1) > 1.5 * at(8, 0));
 }
 
 TEST_CASE("example lamps: the floor below a spot, below the same behind a pane, and below a square lamp") {

@@ -18,7 +18,7 @@ from grin import grin
 from lights import lamps, many_lights
 from manual import write_showcases
 from polarization import fresnel_rhomb, glass_table, polarizers, retarders
-from scattering import cloud, glass_in_fog
+from scattering import cloud, fogbow, glass_in_fog
 from surfaces import films, finishes, materials
 from water import iced_water, pool
 
@@ -28,6 +28,7 @@ SCENES = [
     caustic_box,
     glass_in_fog,
     cloud,
+    fogbow,
     pool,
     iced_water,
     prism,

@@ -98,3 +98,29 @@ def cloud():
     s.light("sun", "directional", 7, look_along([0, 0, 0], [0.66, -0.7, -0.27]), (1, 0.94, 0.85))
     s.camera([60, 40, 520], [0, 122, 0], 30, 1.5)
     return s
+
+
+def fogbow():
+    s = Gltf(
+        "fogbow",
+        "A bank of fog, 50 to 170 m away, that a low sun behind the viewer shines into: droplets of water of 10 µm (effective"
+        " radius; variance 0.03) before dark ground and a dim sky. Around the point opposite the sun, the middle of the image, stands"
+        " a broad white bow, brightest at 38 degrees, red outside and blue inside, 1.8 times as bright as the fog 33 degrees from the"
+        " middle, with a fainter bow within it, at 30 degrees. In the middle is the glory, three times as bright as the fog around,"
+        " with a red ring at 2 degrees. The camera measures Stokes vectors: two thirds of the bow's light, a quarter of the fainter"
+        " one's, swing along the bow, a quarter of the glory's ring across it.",
+    )
+    s.surround([0.012, 0.02, 0.035])
+    s.medium(
+        "fog",
+        scattering=0.001,
+        phase={"class": "mie", "radius": 1e-5, "variance": 0.03, "ior": {"name": "water ior"}},
+    )
+    border = s.surface("border of the fog", "boundary", inside="fog")
+    ground = s.surface("ground", "lambertian", reflectance=[0.006, 0.006, 0.005])
+    s.quad("ground", ground, [[-450, 0, 60], [450, 0, 60], [450, 0, -500], [-450, 0, -500]])
+    s.box("fog", border, [600, 260, 120], translation=[0, 0.5, -110])
+    down = [0, -math.sin(math.radians(20)), -math.cos(math.radians(20))]
+    s.light("sun", "directional", 50, look_along([0, 0, 0], down), (1, 0.97, 0.92))
+    s.camera([0, 80, 0], [0, 80 + down[1], down[2]], 92, 1, stokes=True)
+    return s
