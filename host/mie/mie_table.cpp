@@ -202,7 +202,9 @@ std::vector<Sphere> spheres_of_anchor(const MieParameters& p, const std::vector<
     }
     std::vector<Sphere> result;
     if (parts.empty()) return result;
-    const double step = step_of_size(p.variance, least_at, greatest);
+    // Where two anchors share each wavelength, the resonances that one hits even out.
+    const double step =
+        step_of_size(p.variance, least_at, greatest) / (parts.size() == mie_wavelengths ? 2 : 1);
     for (double x = least + step / 2; x < greatest; x += step) {
         Sphere s{x, relative_index(p, node_nm(anchors[i])), first, {}, {}};
         for (size_t w = 0; w < parts.size(); ++w)

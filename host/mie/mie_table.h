@@ -48,7 +48,8 @@ double largest_mie_size(const MieParameters& p);
 // within most_mie_size.
 MieTable make_mie_table(const MieParameters& p, unsigned threads);
 
-// The mean over such spheres, computed for that wavelength and cosine, at four times as many sizes, 1/sr.
+// The mean over such spheres, computed for that wavelength and cosine, from twice as many sizes at least,
+// 1/sr.
 MieElements direct_mie_elements(const MieParameters& p, double nm, double cosine);
 
 }  // namespace etendue

@@ -1,10 +1,12 @@
-// Spheres of any size, by the theory of Lorenz (1890) and Mie (1908): droplets of fog and clouds with their bows, glory and corona, aerosols,
-// beads in paint. Around them is what the medium has as its index. How much they scatter and absorb the medium says, not this class.
+// Spheres of any size, by the theory of Lorenz (1890) and Mie (1908): droplets of fog and clouds with their bows, glory and corona,
+// aerosols, beads in paint. Around them is what the medium has as its index. How much they scatter and absorb the medium says, not
+// this class.
 //
 // Sizes have a gamma distribution (Hansen & Travis 1974, "Light scattering in planetary atmospheres", equation 2.56). The host
-// tabulates the scattering matrix (host/mie/mie_table.h) for wavelengths 10 nm apart; between them, and between cosines, it is linear
-// here, and sampled exactly. Without wavelengths each channel has that of its dominant one (lane_wavelengths). The largest spheres may
-// have a size parameter, 2 pi radius / wavelength, of 2000: a radius of 110 µm in air where all are the same, 46 µm at a variance of 0.1.
+// tabulates the scattering matrix (host/mie/mie_table.h) for wavelengths 10 nm apart; between them, and between cosines, it is
+// linear here, and sampled exactly. Without wavelengths each channel has that of its dominant one (lane_wavelengths). The largest
+// spheres may have a size parameter, 2 pi radius / wavelength, of 2000: a radius of 114 µm in air where all are the same, 40 µm at
+// a variance of 0.1.
 //
 // Example:
 //     {"extensions": {"ETD_optics": {"media": [

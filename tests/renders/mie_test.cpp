@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/error.h"
 #include "host/mie/mie_table.h"
 #include "host/spectra/color.h"
 #include "tests/renders/agreement_scenes.h"
@@ -93,6 +94,34 @@ TEST_CASE("droplets in colours: each channel has the phase function of its own w
     const Estimates e = render_estimates(scene, plan);
     const glm::dvec3 s0(slab_radiance(611).s11, slab_radiance(549).s11, slab_radiance(464).s11);
     check_channels(e, {}, s0, luminance(s0));
+}
+
+TEST_CASE("a scene's tables of droplets are those of its parameters, among them the medium's own index") {
+    SceneBuilder s;
+    const auto fog = [&](const char* name, double ior, const json& phase) {
+        s.medium(name, {{"scattering", 1}, {"ior", ior}, {"phase", phase}});
+        s.sphere(1, s.material({{"surface", {{"class", "boundary"}}}, {"inside", name}}), at(0, 0, 0));
+    };
+    fog("air", 1, droplets(1e-7, 0));
+    fog("water", 1.33, droplets(4e-7, 0.05));
+    fog("air again", 1, droplets(1e-7, 0));
+    s.orthographic(1, at(0, 0, 2));
+    Scene scene = compile_test_scene(s.import());
+    CHECK(scene.features.spectral);
+    MieParameters in_water = parameters(4e-7f, 0.05f);
+    in_water.surrounding = constant_spectrum(1.33f);
+    std::vector<glm::vec4> expected = make_mie_table(parameters(1e-7f, 0), 2).values;
+    const auto second = make_mie_table(in_water, 2).values;
+    expected.insert(expected.end(), second.begin(), second.end());
+    const Buffer& values = *scene.shared_buffers.at("MieValues");
+    REQUIRE(values.bytes() == expected.size() * sizeof(glm::vec4));
+    CHECK(values.read_array<glm::vec4>(expected.size()) == expected);
+
+    fog("rain", 1, droplets(1e-3, 0.1));
+    CHECK_THROWS_WITH_AS(
+        compile_test_scene(s.import()),
+        doctest::Contains("media/3/phase/radius: 0.001 m; the largest of these spheres have the size"),
+        Error);
 }
 
 TEST_CASE("droplets in a room: all algorithms agree, Stokes vectors included") {
