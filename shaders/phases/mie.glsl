@@ -10,7 +10,8 @@
 //
 // Example:
 //     {"extensions": {"ETD_optics": {"media": [
-//         {"name": "fog", "class": "homogeneous", "scattering": 0.4, "phase": {"class": "mie", "radius": 1e-6, "variance": 0.1}}]}}}
+//         {"name": "fog", "class": "homogeneous", "scattering": 0.4,
+//          "phase": {"class": "mie", "radius": 1e-6, "variance": 0.1}}]}}}
 struct MieRef {  // twin in host/mie/mie_table.h
     uint first;  // node, of mie_values and mie_sums
     uint cells;  // in either half
@@ -18,7 +19,7 @@ struct MieRef {  // twin in host/mie/mie_table.h
 
 struct Mie {
     float radius;                  //: 1e-5 in [1e-9, 1e-3] m. Effective radius of the spheres: the mean, weighted by cross section.
-    float variance;                //: 0.1 in [0, 0.3]. Effective variance of their radii, over the radius squared; 0: all are the same.
+    float variance;                //: 0.1 in [0, 0.3]. Effective variance of their radii, in radius squared; 0: all the same.
     SpectrumRef ior;               //: 1.33 in [0.1, 10] ior. Real refractive index of the spheres.
     SpectrumRef absorption_index;  //: 0 in [0, 10]. Imaginary part of it, k of n - ik.
     MieRef table;                  // made from the parameters before it
