@@ -35,6 +35,8 @@ pictures=(
     "many_lights  160x100  30 auto"
     "retarders    192x96   20 backward"
     "glass_table  168x112  30 backward"
+    "calcite      180x120  40 backward"
+    "fogbow       144x144  30 auto"
 )
 
 scratch=$(mktemp -d)
