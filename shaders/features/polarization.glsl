@@ -35,7 +35,11 @@ Spectrum through_event(inout Polarization p, Mueller m, EventFrames f) {
     return split_stokes(through_event(Stokes(Spectrum(1), p.s1, p.s2, p.s3), m, f), p);
 }
 
+// Below 1, since lanes may differ.
+const float MOST_PREFERENCE = 0.95;
+
 #if STOKES_IMAGE && !FORWARD
+Polarization leading(Carried c) { return Polarization(c.rows[0][1], c.rows[0][2], c.rows[0][3]); }
 Spectrum through_event(inout Carried c, Mueller m, EventFrames f) {
     Spectrum factor = Spectrum(1), inverse = Spectrum(1);
     for (int i = 0; i < 4; ++i) {
@@ -69,12 +73,39 @@ void start_rows(inout Path path, uint receiver) {
 }
 #else
 #define start_rows(path, receiver) path.polarization = unpolarized()
+#define leading(polarization) polarization
 #endif
 #define start_stokes(path, light) path.polarization = light_polarization(light, path.direction)
 
 // A path comes to s along its direction and leaves along another.
 void polarize(inout Path path, ScatteringPoint s, Mueller m, vec3 leaving) {
     path.throughput *= through_event(path.polarization, m, event_frames(s, m, path.direction, leaving));
+}
+
+// Within a medium a sampled direction has any azimuth; it becomes one that the polarization of the path prefers, in proportion to
+// what the event gives of it (in the mean of the lanes), or weights would grow from event to event. Half a turn of twice the azimuth,
+// a quarter turn, exchanges more for less, so that one choice is enough. Densities for weights stay those of unpolarized light.
+void prefer_azimuth(inout Path path, ScatteringPoint s, inout SurfaceEvent event) {
+    float across = dot(event.next.wi.xy, event.next.wi.xy);
+    if (!in_volume(s) || !(across > 0.0)) return;
+    // The first axis lies across the plane of both directions: along y for wi in the plane of x and z.
+    vec3 light = FORWARD == 1 ? path.direction : -path.direction;
+    Polarization p = turned(leading(path.polarization), double_angle(stokes_axis(light), s.frame[1], light));
+    Spectrum share = path.throughput * event.next.weight;
+    share /= max(dot(share, Spectrum(1)), 1e-30);
+    share *= event.next_mueller.b;
+    vec2 prefers = vec2(dot(share, p.s1), dot(share, FORWARD == 1 ? p.s2 : -p.s2));
+    float most = length(prefers);
+    if (most > MOST_PREFERENCE) prefers *= MOST_PREFERENCE / most;
+    vec2 wi = event.next.wi.xy;
+    float preference = dot(prefers, vec2(wi.x * wi.x - wi.y * wi.y, 2.0 * wi.x * wi.y)) / across;
+    if (sample_1d(path.random) >= 0.5 + 0.5 * preference) {
+        event.next.wi.xy = vec2(-wi.y, wi.x);
+        preference = -preference;
+    }
+    event.next.weight /= 1.0 + preference;
+    vec3 to = FORWARD == 1 ? event.next.wi : s.wo;
+    event.next_mueller.from = event.next_mueller.to = facet_axis(to, FORWARD == 1 ? s.wo : event.next.wi);
 }
 
 // … and casts a shadow ray.
@@ -178,6 +209,7 @@ Received analysed(ShadowRay shadow, Spectrum brought) {
 #define start_rows(path, receiver)
 #define start_stokes(path, light)
 #define polarize(path, s, mueller, leaving)
+#define prefer_azimuth(path, s, event)
 #define polarize_shadow(shadow, path, s, mueller)
 #define polarize_passage(shadow, s)
 #define turn_polarization(path, before, after)

@@ -35,6 +35,7 @@ ShadowRay shadow_ray(Path path, SurfacePoint p, ScatteringPoint s, Scattering pa
 
 // The path goes on along the sampled direction. False: it is absorbed.
 bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEvent event, VertexMis mis) {
+    prefer_azimuth(path, s, event);
     BsdfSample b = event.next;
     record_event(path, p, b.event);
     if (b.event == EVENT_NONE || is_black(b.weight)) return false;

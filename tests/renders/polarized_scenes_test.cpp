@@ -2,9 +2,11 @@
 // behind sheets, and sheets that are turned.
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/renders/sheets.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 using nlohmann::json;
@@ -58,6 +60,44 @@ TEST_CASE("a reflecting polarizer gains light by what is behind it") {
     CAPTURE(found.mean);
     CHECK(found.mean > 0.5 * t / (1 - r * b / 2) * 0.99);
     CHECK(found.mean < (0.5 * t + 0.5 * (1 - b)) / (1 - r * (b + 1 - t) / 2) * 1.01);
+}
+
+// Light that comes out of a thick layer that scatters after Rayleigh and absorbs nothing is polarized along
+// the horizon, more towards it (Chandrasekhar 1960, "Radiative Transfer", table XXIV). Each event gives or
+// takes up to all of it: without prefer_azimuth() (shaders/features/polarization.glsl) errors are fifty times
+// as large.
+TEST_CASE("a Rayleigh atmosphere lit from far below is polarized towards its limb") {
+    struct Direction {
+        double cosine, degree;
+    };
+    for (const Direction& d : {Direction{1, 0}, {0.5, 0.0225}, {0.2, 0.0541}}) {
+        SceneBuilder s;
+        s.medium("air", {{"scattering", 6}, {"phase", {{"class", "rayleigh"}}}});
+        add_box(s, {60, 60, 1}, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "air"}}), false,
+                at(0, 0, 0));
+        s.rectangle(60, 60, s.black_emitter(1), at(0, 0, -0.501));
+        const double angle = std::acos(d.cosine);
+        const glm::dvec3 view(0, std::sin(angle), -std::cos(angle)),
+            from = glm::dvec3(0, 0, 0.5) - 2.0 * view;
+        s.perspective(0.01, {{from.x, from.y, from.z}, {std::sin(angle / 2), 0, 0, std::cos(angle / 2)}});
+        RenderPlan plan;
+        plan.width = plan.height = 16, plan.passes = 1024, plan.stokes = true;
+        SceneOptions options;
+        options.shaders = source_path("shaders");
+        options.cache_folder = default_cache_folder();
+        options.polarization = PolarizationMode::on;
+        options.varying = {"places"};
+        Scene scene = compile_scene(test_device(), s.import(), options);
+        const Estimates e = render_estimates(scene, plan);
+        std::array<WindowMean, 4> stokes;
+        for (uint32_t i = 0; i < 4; ++i) stokes[i] = window_mean(e, {0, 16 * i, 16, 16});
+        const double degree = stokes[1].mean / stokes[0].mean;
+        const double error = stokes[1].standard_error / stokes[0].mean;
+        MESSAGE("cosine ", d.cosine, ": S1 ", degree, " +- ", error);
+        CHECK(std::fabs(degree - d.degree) < 0.001 + 4 * error);
+        CHECK(error < 0.002);
+        CHECK(std::fabs(stokes[2].mean) < 5 * stokes[2].standard_error + 1e-5);
+    }
 }
 
 TEST_CASE("a lamp behind a polarizer gives half, behind two what Malus says, by rays of both directions") {
