@@ -1,7 +1,8 @@
 // Polarized light. A forward path carries a Stokes vector, a backward one a row that multiplies such vectors from the left: the
 // first number is the path's throughput, the others stand beside it in units of that, in the frame of the light, which goes
 // against backward rays. Directions, depths and Russian roulette are chosen without it, so that the densities of all ways to make
-// a path stay as they are; an event takes or gives up to twice of what it does to unpolarized light.
+// a path stay as they are; an event takes or gives up to twice of what it does to unpolarized light. Only azimuths within media are
+// chosen by it, and weights do not know that.
 //
 // Rows and vectors meet where paths do (Mojzík et al. 2016, "Bi-directional Polarised Light Transport").
 #include "features/polarized_lights.glsl"
