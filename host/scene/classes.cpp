@@ -307,7 +307,7 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
     for (const ClassInfo* info : classes) {
         const auto known = constants.find(info->name);
         if (known != constants.end()) text += known->second.macros;
-        text += fmt::format("#include \"{}\"\n", info->file);
+        text += fmt::format("#define TAG_{} {}\n#include \"{}\"\n", info->name, info->tag, info->file);
         if (interface.interface == Interface::surface && !info->says_polarization)
             text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n",
                                 info->name);

@@ -1,5 +1,5 @@
-// Crystals: double refraction at faces between them and what is around or beside them, whatever class of surface these have (the
-// host sees to it that it is a smooth dielectric).
+// Crystals: double refraction at faces between them and what is around or beside them, of class dielectric (the host sees to it that
+// faces of crystals are, and smooth). Kernels for other classes have none of it but the mode.
 //
 // Rays within a crystal are ordinary or extraordinary, each polarized in one way, so that S0 alone says all of them; a face sends
 // a ray to one of up to four others, by the exact share of power that unpolarized light has there. Waves that leave a crystal along
@@ -14,9 +14,10 @@
 #if HAS_CRYSTALS
 #include "lib/crystal_interface.glsl"
 
+#if defined(TAG_dielectric) && (!defined(ONLY_SURFACE_CLASS) || ONLY_SURFACE_CLASS == TAG_dielectric)
 // Does the face separate a crystal from something else?
-bool meets_crystal(Crossing c) {
-    if (c.above.medium == c.below.medium) return false;
+bool meets_crystal(uint surface, Crossing c) {
+    if (record_tag(surface) != uint(TAG_dielectric) || c.above.medium == c.below.medium) return false;
     return is_crystal(medium_crystal(c.above.medium)) || is_crystal(medium_crystal(c.below.medium));
 }
 
@@ -97,6 +98,11 @@ void cross_crystal(inout SurfaceEvent event, ScatteringPoint s, float u) {
     keep_mueller(event.next_mueller, crystal_mueller(f, first, two, s.context.importance, frame[1]));
 }
 
+#else
+#define meets_crystal(surface, crossing) false
+#define cross_crystal(event, s, u)
+#endif
+
 // Stokes parameters S1 to S3 over S0 of a crystal's ray, and x of their frame: it swings across the plane of ray and axis, or in it.
 void crystal_polarization(vec3 ray, uint medium, uint mode, inout vec3 stokes, inout vec3 x) {
     if (mode == MODE_NONE) return;
@@ -111,7 +117,7 @@ void crystal_polarization(vec3 ray, uint medium, uint mode, inout vec3 stokes, i
 #define mode_of(path) path.mode
 #define keep_mode(holder, value) holder.mode = value
 #else
-#define meets_crystal(crossing) false
+#define meets_crystal(surface, crossing) false
 #define cross_crystal(event, s, u)
 #define crystal_polarization(ray, medium, mode, stokes, axis)
 #define start_mode(path)

@@ -47,7 +47,8 @@ Received follow_shadow_ray(ShadowRay shadow) {
         SurfacePoint p = locate(hit, shadow.origin, direction);
         Crossing sides = meet_faces(shadow.origin, direction, shadow.around, hit, p);
         if (is_there(sides)) {
-            if ((materials[p.material].flags & MATERIAL_OPAQUE) != 0u || meets_crystal(sides)) return Received(0);
+            Material m = materials[p.material];
+            if ((m.flags & MATERIAL_OPAQUE) != 0u || meets_crystal(m.surface, sides)) return Received(0);
             ScatteringPoint s = scattering_point(p, direction, sides);
             shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
             polarize_passage(shadow, s);

@@ -131,7 +131,7 @@ float catch_density(ScatteringPoint s, vec3 direction) {
 // Scattering at a point of either kind, with directions in its frame (interfaces/surface_optics.glsl).
 
 bool is_delta_point(ScatteringPoint s) {
-    return !in_volume(s) && (meets_crystal(s.sides) || surface_is_delta(s.surface, s.context));
+    return !in_volume(s) && (meets_crystal(s.surface, s.sides) || surface_is_delta(s.surface, s.context));
 }
 
 // Of a surface of any class, in a kernel for one class too.
@@ -151,6 +151,6 @@ SurfaceEvent scattering_event(ScatteringPoint s, vec3 wi, vec3 second, uint aske
         keep_mueller(event.next_mueller, phase_pair(s, event.next.wi).mueller);
     }
     keep_mode(event, s.mode);
-    if (meets_crystal(s.sides)) cross_crystal(event, s, u.z);
+    if (meets_crystal(s.surface, s.sides)) cross_crystal(event, s, u.z);
     return event;
 }

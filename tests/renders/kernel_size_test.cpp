@@ -12,7 +12,7 @@
 #include "host/render/techniques.h"
 #include "host/render/wavefront.h"
 #include "host/scene/classes.h"
-#include "tests/renders/registered_surfaces.h"
+#include "tests/renders/registered_classes.h"
 #include "tests/support/light_probe.h"
 #include "tests/support/render_probe.h"
 #include "tests/support/source_path.h"
@@ -158,7 +158,7 @@ TEST_CASE(
     for (const ClassInfo& info : registry.classes(Interface::surface))
         add(surface_of(info.name), {{"class", "homogeneous"}, {"scattering", 1}});
     for (const ClassInfo& info : registry.classes(Interface::medium))
-        add({{"class", "dielectric"}}, {{"class", info.name}});
+        add({{"class", "dielectric"}}, medium_of(info.name));
     Scene scene = compile_test_scene(import_gltf(all.write()));
     REQUIRE(scene.features.polarization);
     CHECK(largest_kernel(scene, Algorithm::bidirectional, true).bytes <= most_polarized_kernel_bytes);

@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "host/scene/classes.h"
-#include "tests/renders/registered_surfaces.h"
+#include "tests/renders/registered_classes.h"
 #include "tests/renders/sheets.h"
 #include "tests/support/source_path.h"
 #include "tests/support/light_probe.h"
@@ -160,11 +160,9 @@ TEST_CASE("turned cameras, mirrored scenes and the degree of polarization: every
     for (const ClassInfo& known : registry.classes(Interface::medium)) {
         const ClassInfo& info = *registry.find(Interface::medium, known.name);
         if (info.name == "grid") continue;  // needs a file, and is a medium of phases like others
-        json medium = {{"class", info.name}};
-        for (const Parameter& p : info.parameters) {
-            if (p.required) medium[p.member.name] = p.member.name == "ior_ordinary" ? 1.66 : 1.49;
+        json medium = medium_of(info.name);
+        for (const Parameter& p : info.parameters)
             if (p.member.name == "axis") medium["axis"] = {0.3, 0.5, 0.8};
-        }
         check(medium, {{"class", "dielectric"}});
     }
     for (const ClassInfo& info : registry.classes(Interface::phase))

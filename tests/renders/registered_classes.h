@@ -1,4 +1,4 @@
-// Something of every registered class of surfaces, for what is asked of all of them.
+// Something of every registered class of surfaces and media, for what is asked of all of them.
 #pragma once
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -16,7 +16,13 @@ inline nlohmann::json surface_of(const std::string& name) {
     return surface;
 }
 
-// The file that it names.
+inline nlohmann::json medium_of(const std::string& name) {
+    nlohmann::json medium = {{"class", name}};
+    if (name == "uniaxial") medium["ior_ordinary"] = 1.66, medium["ior_extraordinary"] = 1.49;
+    return medium;
+}
+
+// The file that `measured` names.
 inline void write_metal(const std::filesystem::path& folder) {
     GgxMetal metal;
     metal.reflectance = [](double, size_t) { return 0.8; };
