@@ -85,7 +85,7 @@ struct FilmState {
 // (tests/renders/kernel_size_test.cpp): of backward rays alone, which a first pass waits for; both ways; both
 // ways with polarization.
 constexpr uint64_t most_backward_kernel_bytes = 224 << 10, most_kernel_bytes = 256 << 10,
-                   most_polarized_kernel_bytes = 320 << 10;
+                   most_polarized_kernel_bytes = 336 << 10;
 
 // What `techniques` are run by on the device. Where not even a kernel for each class would be within the
 // budget, because it knows the classes at both ends of connections, vertices are no longer connected.
