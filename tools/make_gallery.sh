@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Renders the pictures of the README's gallery, and writes the table of them: seconds of rendering, and the relative error that the
-# program itself estimates. Takes about thirteen minutes on two cores.
+# program itself estimates. Takes about fourteen minutes on two cores.
 #
 #   tools/make_gallery.sh            pictures to scenes/gallery, the table into README.md, between its two marks
 #   tools/make_gallery.sh FOLDER     all of it to another folder, the table as FOLDER/README.md
 #
 # It takes build/release/etendue, or the program that ETENDUE_PROGRAM names. `bench` makes the PNGs: it draws the image that it is
-# given as a reference so bright that the mean of its green is 0.25. Sizes are such that a PNG takes some 40 kB at most;
+# given as a reference so bright that the mean of its green is 0.25. Sizes are such that a PNG takes some 50 kB at most;
 # noise hardly packs. Scenes of which nothing shall be seen are left out.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
