@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include <thread>
 
 #include "host/error.h"
+#include "host/parallel_for.h"
 
 namespace etendue {
 namespace {
@@ -215,18 +214,6 @@ struct Builder {
         return index;
     }
 };
-
-template <class Function>
-void parallel_for(size_t count, unsigned threads, Function function) {
-    std::atomic<size_t> next = 0;
-    const auto work = [&] {
-        for (size_t i; (i = next.fetch_add(1)) < count;) function(i);
-    };
-    std::vector<std::thread> pool;
-    for (unsigned i = 1; i < std::min<size_t>(threads, count); i++) pool.emplace_back(work);
-    work();
-    for (std::thread& thread : pool) thread.join();
-}
 
 // The top of the tree, split until the ranges are small enough to share out; both halves of every split are
 // worked on in parallel. What is split depends on the primitives alone, never on the threads.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <numbers>
-#include <thread>
 #include <utility>
+
+#include "host/parallel_for.h"
 
 namespace etendue {
 namespace {
@@ -172,17 +172,6 @@ void add_elements(const std::vector<Sphere>& spheres, uint32_t cells, uint32_t f
             }
         }
     }
-}
-
-template <class Function>
-void parallel_for(size_t count, unsigned threads, Function function) {
-    std::atomic<size_t> next = 0;
-    const auto work = [&] {
-        for (size_t i; (i = next.fetch_add(1)) < count;) function(i);
-    };
-    std::vector<std::jthread> pool;
-    for (unsigned i = 1; i < std::min<size_t>(threads, count); ++i) pool.emplace_back(work);
-    work();
 }
 
 // Spheres with the index of anchor `i`: the same sizes at all wavelengths that it stands for.

@@ -83,7 +83,6 @@ float film_reflectance(float cos_o, float n, float film, float thickness, vec2 b
     return min(0.5 * (reflected.x + reflected.y), 1.0);
 }
 
-
 // Of light that a film reflects or lets through: |s|², |p|² and p conj(s), complex, of its amplitudes, in Verdet's signs (r_p is
 // less the admittances' one).
 vec4 film_moments(FilmStack stack, bool reflects, float phase_range) {

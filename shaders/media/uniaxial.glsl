@@ -1,6 +1,6 @@
 // A crystal of one optic axis (calcite, quartz, sapphire, ice): light that enters it goes on as two rays, polarized across each
 // other, each with its refractive index, direction and absorption. Its faces must be smooth dielectrics; it does not scatter.
-// Of light that is neither, the parts that leave it along one direction do not interfere: thin sheets are retarders.
+// What both rays bring along one direction behind it does not interfere: thin sheets are retarders.
 //
 // Example:
 //     {"materials": [{"name": "calcite", "extensions": {"ETD_optics": {
