@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "host/image/png.h"
+#include "tests/renders/sheets.h"
 #include "tests/support/render_probe.h"
 #include "tests/support/temporary_folder.h"
 
@@ -28,6 +29,17 @@ inline void add_room(SceneBuilder& s) {
 inline void add_lamp(SceneBuilder& s, double size) {
     const double l = 4 / (size * size);
     s.rectangle(size, size, s.black_emitter({l, 1.1 * l, 1.2 * l}), hanging(0, 1.95, 0));
+}
+
+// Fog around a mirror, under a small lamp, seen through a wave plate.
+inline void add_foggy_room(SceneBuilder& s, const nlohmann::json& phase, const nlohmann::json& walls) {
+    s.medium("fog", {{"scattering", 0.5}, {"phase", phase}});
+    add_box(s, {4, 4, 4}, s.lambertian(walls), true, at(0, 0, 0));
+    s.sphere(1.2, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}}), at(0, 0, -0.5));
+    s.perspective(1.2, at(0, 0, 1.95));
+    add_lamp(s, 0.5);
+    s.rectangle(0.3, 0.3, s.surface(wave_plate(0.9, 1.1)), at(0, 0, 1.8));
+    s.sphere(0.4, s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}}), at(0.2, -0.2, -0.6));
 }
 
 // A sphere of segments * (rings - 1) * 2 facets, the vertex normals those of the sphere.

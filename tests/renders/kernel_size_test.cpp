@@ -138,11 +138,9 @@ TEST_CASE("kernels of exports with every material extension are within the budge
 // More classes mean more kernels, not larger ones: films both ways with polarization are traced by class;
 // where all classes are met vertices are not connected, too.
 TEST_CASE("kernels of films that polarize are within the budget") {
-    SceneOptions options;
-    options.shaders = source_path("shaders");
+    SceneOptions options = test_options();
     options.polarization = PolarizationMode::on;
-    check_sizes(compile_scene(test_device(), import_gltf(source_path("scenes/films.gltf")), options),
-                "films");
+    check_sizes(compile_test_scene(import_gltf(source_path("scenes/films.gltf")), options), "films");
 }
 
 TEST_CASE(

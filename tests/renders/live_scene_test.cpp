@@ -36,13 +36,6 @@ SceneBuilder room(const Values& v) {
     return s;
 }
 
-SceneOptions test_options() {
-    SceneOptions options;
-    options.shaders = source_path("shaders");
-    options.cache_folder = default_cache_folder();
-    return options;
-}
-
 std::vector<std::byte> film(Scene& scene, Algorithm algorithm = Algorithm::bidirectional) {
     RenderSettings settings;
     settings.width = 24, settings.height = 24;

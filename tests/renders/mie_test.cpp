@@ -43,10 +43,9 @@ SceneDescription slab() {
 }
 
 Scene compiled(ColorMode color) {
-    SceneOptions options;
-    options.shaders = source_path("shaders");
+    SceneOptions options = test_options();
     options.color = color, options.polarization = PolarizationMode::on;
-    return compile_scene(test_device(), slab(), options);
+    return compile_test_scene(slab(), options);
 }
 
 MieElements slab_radiance(double nm) {
@@ -126,13 +125,7 @@ TEST_CASE("a scene's tables of droplets are those of its parameters, among them 
 
 TEST_CASE("droplets in a room: all algorithms agree, Stokes vectors included") {
     SceneBuilder s;
-    s.medium("fog", {{"class", "homogeneous"}, {"scattering", 0.5}, {"phase", droplets(6e-7, 0.05)}});
-    add_box(s, {4, 4, 4}, s.lambertian(0.5), true, at(0, 0, 0));
-    s.sphere(1.2, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}}), at(0, 0, -0.5));
-    s.perspective(1.2, at(0, 0, 1.95));
-    add_lamp(s, 0.5);
-    s.rectangle(0.3, 0.3, s.surface(wave_plate(0.9, 1.1)), at(0, 0, 1.8));
-    s.sphere(0.4, s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}}), at(0.2, -0.2, -0.6));
+    add_foggy_room(s, droplets(6e-7, 0.05), 0.5);
     Comparison c;
     c.backward = 64, c.forward = 64, c.bidirectional = 32;
     c.largest_error = 0.015;

@@ -90,12 +90,10 @@ void check_measured(const dvec3& in, const Matrix& expected, AddSample add_sampl
         add_sample(s);
         RenderPlan plan;
         plan.width = plan.height = 8, plan.seeds = 2, plan.passes = 1024;
-        SceneOptions options;
-        options.shaders = source_path("shaders");
-        options.cache_folder = default_cache_folder();
+        SceneOptions options = test_options();
         options.color = ColorMode::rgb;
         options.varying = {"places", "surface/linear_polarizer/axis", "surface/retarder/axis"};
-        Scene scene = compile_scene(test_device(), s.import(), options);
+        Scene scene = compile_test_scene(s.import(), options);
         values.push_back(window_mean(render_estimates(scene, plan)).mean);
         const Matrix receiving = product(turned(polarizer_along_x, pi / 2), turned(quarter_wave, f)),
                      sending = product(turned(quarter_wave, 5 * f), polarizer_along_x);

@@ -10,6 +10,7 @@
 #include "host/scene/classes.h"
 #include "tests/renders/registered_classes.h"
 #include "tests/renders/sheets.h"
+#include "tests/renders/stokes_means.h"
 #include "tests/support/source_path.h"
 #include "tests/support/light_probe.h"
 #include "tests/support/temporary_folder.h"
@@ -21,8 +22,6 @@ using nlohmann::json;
 namespace {
 
 constexpr double turn = 0.6;  // rad, of the camera about its view
-
-using StokesMeans = std::array<WindowMean, 4>;
 
 // How a class stands in the scene; mirrored, its angles are of the other sign.
 using Sample = std::function<void(SceneBuilder& s, bool mirrored)>;
@@ -59,20 +58,12 @@ SceneBuilder scene_of(const Sample& sample, bool mirrored, double turned) {
 Estimates seen(const SceneBuilder& s, const std::filesystem::path& folder, uint32_t seeds, uint32_t passes) {
     RenderPlan plan;
     plan.width = plan.height = 16, plan.seeds = seeds, plan.passes = passes, plan.stokes = true;
-    SceneOptions options;
-    options.shaders = source_path("shaders");
-    options.cache_folder = default_cache_folder();
+    SceneOptions options = test_options();
     options.polarization = PolarizationMode::on;
     options.color = ColorMode::rgb;
     options.varying = {"places"};  // so that the scenes of a class have the same kernels
-    Scene scene = compile_scene(test_device(), s.import(folder / "scene.gltf"), options);
+    Scene scene = compile_test_scene(s.import(folder / "scene.gltf"), options);
     return render_estimates(scene, plan);
-}
-
-StokesMeans means_of(const Estimates& e) {
-    StokesMeans means;
-    for (uint32_t i = 0; i < 4; ++i) means[i] = window_mean(e, {0, 16 * i, 16, 16});
-    return means;
 }
 
 void check_same(const StokesMeans& found, const StokesMeans& other, const std::array<double, 4>& expected) {
@@ -88,9 +79,9 @@ void check_same(const StokesMeans& found, const StokesMeans& other, const std::a
 
 // Returns how much is polarized.
 double check_invariants(const Sample& sample, const std::filesystem::path& folder) {
-    const StokesMeans straight = means_of(seen(scene_of(sample, false, 0), folder, 8, 64));
-    const StokesMeans turned = means_of(seen(scene_of(sample, false, turn), folder, 8, 64));
-    const StokesMeans mirrored = means_of(seen(scene_of(sample, true, 0), folder, 8, 64));
+    const StokesMeans straight = stokes_means(seen(scene_of(sample, false, 0), folder, 8, 64));
+    const StokesMeans turned = stokes_means(seen(scene_of(sample, false, turn), folder, 8, 64));
+    const StokesMeans mirrored = stokes_means(seen(scene_of(sample, true, 0), folder, 8, 64));
     const double c = std::cos(2 * turn), s = std::sin(2 * turn);
     const auto at = [&](int i) { return straight[i].mean; };
     INFO("turned");

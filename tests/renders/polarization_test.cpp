@@ -10,6 +10,7 @@
 #include "host/gltf/gltf.h"
 #include "host/spectra/color.h"
 #include "tests/renders/sheets.h"
+#include "tests/renders/stokes_means.h"
 #include "tests/support/source_path.h"
 
 using namespace etendue;
@@ -29,9 +30,7 @@ void add_sheets(SceneBuilder& s, const std::vector<json>& sheets, const dvec3& n
 }
 
 Estimates estimates_of(const SceneBuilder& s, PolarizationMode mode, RenderPlan plan) {
-    SceneOptions options;
-    options.shaders = source_path("shaders");
-    options.cache_folder = default_cache_folder();
+    SceneOptions options = test_options();
     options.polarization = mode;
     options.color = ColorMode::rgb;
     // Scenes of the same classes have the same kernels.
@@ -42,7 +41,7 @@ Estimates estimates_of(const SceneBuilder& s, PolarizationMode mode, RenderPlan 
                        "surface/linear_polarizer/kind",
                        "surface/retarder/axis",
                        "surface/retarder/retardance"};
-    Scene scene = compile_scene(test_device(), s.import(), options);
+    Scene scene = compile_test_scene(s.import(), options);
     return render_estimates(scene, plan);
 }
 
@@ -54,17 +53,13 @@ WindowMean seen(const SceneBuilder& s, PolarizationMode mode = PolarizationMode:
     return window_mean(estimates_of(s, mode, plan));
 }
 
-using StokesMeans = std::array<WindowMean, 4>;
-
 // By a camera of Stokes vectors.
 StokesMeans seen_stokes(const SceneBuilder& s, Algorithm algorithm = Algorithm::backward) {
     RenderPlan plan;
     plan.width = plan.height = 32;
     plan.stokes = true, plan.algorithm = algorithm;
     const Estimates e = estimates_of(s, PolarizationMode::on, plan);
-    StokesMeans means;
-    for (uint32_t i = 0; i < 4; ++i) means[i] = window_mean(e, {0, 32 * i, 32, 32});
-    return means;
+    return stokes_means(e);
 }
 
 void check_seen(const WindowMean& found, double expected) {
@@ -104,16 +99,6 @@ StokesMeans stokes(const SceneBuilder& scene) {
     };
     return {sum(linear(0), linear(pi / 2), 1), sum(linear(0), linear(pi / 2), -1),
             sum(linear(pi / 4), linear(-pi / 4), -1), sum(circular(-pi / 4), circular(pi / 4), -1)};
-}
-
-void check_stokes(const StokesMeans& found, const dvec4& expected) {
-    for (int i = 0; i < 4; ++i) {
-        CAPTURE(i);
-        CAPTURE(found[i].mean);
-        CAPTURE(found[i].standard_error);
-        CHECK(std::fabs(found[i].mean - expected[i]) < 1e-5 + 5 * found[i].standard_error);
-        CHECK(found[i].standard_error < 3e-4);
-    }
 }
 
 // Absorbs at once whatever it refracts.
@@ -197,10 +182,8 @@ TEST_CASE("wave plates between polarizers") {
         for (int i = 0; i < 2; ++i)
             tilted.rectangle(0.02, 0.02, tilted.surface(polarizer((i ? -1 : 1) * pi / 4)),
                              at(0, 0, i ? -0.05 : -0.6));
-        SceneOptions options;
-        options.shaders = source_path("shaders");
-        options.cache_folder = default_cache_folder();
-        Scene scene = compile_scene(test_device(), tilted.import(), options);
+        SceneOptions options = test_options();
+        Scene scene = compile_test_scene(tilted.import(), options);
         RenderPlan plan;
         plan.width = plan.height = 32;
         CAPTURE(azimuth);

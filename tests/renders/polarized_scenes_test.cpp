@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/renders/sheets.h"
+#include "tests/renders/stokes_means.h"
 #include "tests/support/source_path.h"
 
 using namespace etendue;
@@ -82,15 +83,11 @@ TEST_CASE("a Rayleigh atmosphere lit from far below is polarized towards its lim
         s.perspective(0.01, {{from.x, from.y, from.z}, {std::sin(angle / 2), 0, 0, std::cos(angle / 2)}});
         RenderPlan plan;
         plan.width = plan.height = 16, plan.passes = 1024, plan.stokes = true;
-        SceneOptions options;
-        options.shaders = source_path("shaders");
-        options.cache_folder = default_cache_folder();
+        SceneOptions options = test_options();
         options.polarization = PolarizationMode::on;
         options.varying = {"places"};
-        Scene scene = compile_scene(test_device(), s.import(), options);
-        const Estimates e = render_estimates(scene, plan);
-        std::array<WindowMean, 4> stokes;
-        for (uint32_t i = 0; i < 4; ++i) stokes[i] = window_mean(e, {0, 16 * i, 16, 16});
+        Scene scene = compile_test_scene(s.import(), options);
+        const StokesMeans stokes = stokes_means(render_estimates(scene, plan));
         const double degree = stokes[1].mean / stokes[0].mean;
         const double error = stokes[1].standard_error / stokes[0].mean;
         MESSAGE("cosine ", d.cosine, ": S1 ", degree, " +- ", error);

@@ -68,13 +68,7 @@ TEST_CASE("circular light among metals: all algorithms agree") {
 
 TEST_CASE("polarized light in fog: all algorithms agree") {
     SceneBuilder s;
-    s.medium("fog", {{"class", "homogeneous"}, {"scattering", 0.5}, {"phase", {{"class", "rayleigh"}}}});
-    add_box(s, {4, 4, 4}, s.lambertian({0.7, 0.5, 0.3}), true, at(0, 0, 0));
-    s.sphere(1.2, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}}), at(0, 0, -0.5));
-    s.perspective(1.2, at(0, 0, 1.95));
-    add_lamp(s, 0.5);
-    s.rectangle(0.3, 0.3, s.surface(wave_plate(0.9, 1.1)), at(0, 0, 1.8));
-    s.sphere(0.4, s.surface({{"class", "conductor"}, {"eta", 0.2}, {"k", 3.4}}), at(0.2, -0.2, -0.6));
+    add_foggy_room(s, {{"class", "rayleigh"}}, {0.7, 0.5, 0.3});
     Comparison c;
     c.backward = 64, c.forward = 64, c.bidirectional = 32;
     c.largest_error = 0.01;

@@ -180,10 +180,14 @@ void add_box(SceneBuilder& scene, const glm::vec3& size, int material, bool inwa
     scene.mesh(corners, indices, material, place);
 }
 
-Scene compile_test_scene(const SceneDescription& description) {
+SceneOptions test_options() {
     SceneOptions options;
     options.shaders = source_path("shaders");
     options.cache_folder = default_cache_folder();
+    return options;
+}
+
+Scene compile_test_scene(const SceneDescription& description, const SceneOptions& options) {
     return compile_scene(test_device(), description, options);
 }
 

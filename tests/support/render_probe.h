@@ -84,7 +84,8 @@ struct Estimates {
     }
 };
 
-Scene compile_test_scene(const SceneDescription& description);
+SceneOptions test_options();  // with the shaders of the source tree; compiled ones go to the cache
+Scene compile_test_scene(const SceneDescription& description, const SceneOptions& options = test_options());
 Estimates render_estimates(Scene& scene, const RenderPlan& plan);
 Estimates render_estimates(const SceneDescription& description, const RenderPlan& plan);
 
