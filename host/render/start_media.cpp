@@ -2,19 +2,42 @@
 
 #include <algorithm>
 
+#include "host/error.h"
+
 namespace etendue {
 
-StartMedia::StartMedia(Device& device, Scene& scene, bool of_lights) : device_(device) {
+namespace {
+
+// Light that is emitted, or received, within a crystal has no direction alone but a wave: not modelled.
+void refuse_crystals(const Scene& scene, const std::vector<uint32_t>& words, size_t stride) {
+    for (size_t i = 0; i < words.size() / stride; ++i) {
+        const uint32_t medium = words[i * stride];  // Surroundings::medium
+        for (const ClassInfo* info : scene.classes.at(Interface::medium))
+            if (info->is_crystal && medium != no_record && medium >> 24 == info->tag)
+                fail_input("{} stands within the crystal {}; receivers and lights are allowed outside",
+                           i == 0 ? "the receiver" : "light " + scene.light_names.at((i - 1) / 2),
+                           scene.medium_names.at(medium));
+    }
+}
+
+}  // namespace
+
+StartMedia::StartMedia(Device& device, Scene& scene, bool of_lights) : device_(device), scene_(scene) {
     if (!scene.features.interfaces) return;
     count_ = of_lights ? 1 + 2 * uint32_t(scene.lights) : 1;
     const char* file = "kernels/find_start_media.comp";
     const std::string defines = of_lights ? "#define OF_LIGHTS 1\n" : "#define OF_LIGHTS 0\n";
     const InColors colors(scene);  // what is asked does not depend on wavelengths
-    media_ = Buffer(device, count_ * element_bytes(device, scene, file, defines, "StartMedia"), "StartMedia");
+    element_words_ = element_bytes(device, scene, file, defines, "StartMedia") / sizeof(uint32_t);
+    media_ = Buffer(device, count_ * element_words_ * sizeof(uint32_t), "StartMedia");
     kernel_ = make_kernel(device, scene, file, {{"StartMedia", &media_}}, defines);
 }
 
-void StartMedia::find(uint32_t receiver, float film_aspect) { ask(count_, receiver, film_aspect); }
+void StartMedia::find(uint32_t receiver, float film_aspect) {
+    ask(count_, receiver, film_aspect);
+    if (scene_.features.crystals && count_ > 0)
+        refuse_crystals(scene_, media_.read_array<uint32_t>(count_ * element_words_), element_words_);
+}
 
 void StartMedia::find_of_receiver(uint32_t receiver, float film_aspect) {
     ask(std::min(count_, 1u), receiver, film_aspect);

@@ -185,3 +185,27 @@ TEST_CASE("faces of crystals that are not smooth dielectrics are refused") {
               std::string::npos);
     CHECK(complaint({{"class", "dielectric"}}).empty());
 }
+
+TEST_CASE("receivers and lights within a crystal are refused") {
+    const auto refused = [](const Place& camera, const Place& lamp) {
+        SceneBuilder s;
+        s.environment(1);
+        s.perspective(0.5, camera);
+        s.rectangle(0.1, 0.1, s.black_emitter(1), lamp);
+        s.sphere(0.4, crystal(s, calcite({1, 2, 2})), at(0, 0, 0));
+        Scene scene = compile_test_scene(s.import());
+        RenderPlan plan;
+        plan.width = plan.height = 4, plan.passes = 1, plan.algorithm = Algorithm::forward;
+        plan.seeds = 1;
+        try {
+            render_estimates(scene, plan);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    CHECK(refused(at(0, 0, 3), at(0, 1, 0)).empty());
+    CHECK(refused(at(0, 0, 0.1), at(0, 1, 0)).find("the receiver stands within the crystal crystal") !=
+          std::string::npos);
+    CHECK(refused(at(0, 0, 3), at(0, 0.1, 0)).find("stands within the crystal crystal") != std::string::npos);
+}
