@@ -51,6 +51,12 @@ const Receiver& choose_receiver(const Scene& scene, const SceneChoice& choice) {
 }
 
 ImageSize image_size(const Receiver& receiver, const SceneChoice& choice) {
+    if (receiver.columns > 0) {
+        if (choice.size)
+            fail_input("--size: the receiver {} has {} x {} pixels, as its resolution says", receiver.name,
+                       receiver.columns, receiver.rows);
+        return {receiver.columns, receiver.rows};
+    }
     if (choice.size) return *choice.size;
     const float aspect = receiver.aspect_ratio > 0 ? receiver.aspect_ratio : 1.0f;
     return {std::max(1u, uint32_t(std::lround(512 * aspect))), 512};

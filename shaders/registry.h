@@ -23,9 +23,14 @@
     X(6, ImageEnvironment, image)
 
 // folder receivers/, contract interfaces/receiver.glsl
-#define RECEIVER_CLASSES(X)              \
-    X(1, PerspectiveCamera, perspective) \
-    X(2, OrthographicCamera, orthographic)
+#define RECEIVER_CLASSES(X)                \
+    X(1, PerspectiveCamera, perspective)   \
+    X(2, OrthographicCamera, orthographic) \
+    X(3, ThinLensCamera, thin_lens)        \
+    X(4, PanoramaCamera, panorama)         \
+    X(5, LuminanceMeter, luminance_meter)  \
+    X(6, IlluminanceMeter, illuminance)    \
+    X(7, IntensityMeter, intensity)
 
 // folder surfaces/, contract interfaces/surface_optics.glsl
 #define SURFACE_CLASSES(X)                           \

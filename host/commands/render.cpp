@@ -194,7 +194,9 @@ int render_command(const RenderOptions& given) {
 
     Image image = renderer->develop(options.aovs);
     const RelativeError error = renderer->relative_error();
-    if (options.aovs) renderer->add_aovs(image, aov_samples);
+    const std::string& unit = receiver.info->pixel_unit;  // empty: of a camera, which sees things
+    if (options.aovs && unit.empty()) renderer->add_aovs(image, aov_samples);
+    image.attributes["pixelUnit"] = unit.empty() ? std::string("cd/m²") : unit;
     if (options.aovs && has_stokes(image)) add_polarization(image);
     renderer->add_spectra(image);
     image.attributes.merge(std::map<std::string, Attribute>{

@@ -61,6 +61,11 @@ void read_class(const std::string& text, ClassInfo& info) {
     info.summary = std::move(head.summary), info.example = std::move(head.example);
     info.says_polarization = text.find(info.name + "_mueller(") != std::string::npos;
     info.is_crystal = text.find(info.name + "_crystal(") != std::string::npos;
+    info.has_aperture = text.find("#define " + info.name + "_HAS_APERTURE") != std::string::npos;
+    info.has_receptor = text.find(info.name + "_receptor(") != std::string::npos;
+    info.is_far = text.find(info.name + "_far(") != std::string::npos;
+    std::smatch unit;
+    if (std::regex_search(info.summary, unit, std::regex(R"(A pixel: (\S+)\.)"))) info.pixel_unit = unit[1];
     info.has_general_mueller = text.find("is_general") != std::string::npos;
     info.has_body_mueller = text.find("set_body(") != std::string::npos;
     info.polarizes = std::regex_search(text, std::regex(R"(#define \w+_POLARIZES\b)"));
@@ -311,6 +316,15 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         if (interface.interface == Interface::surface && !info->says_polarization)
             text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n",
                                 info->name);
+        if (interface.interface == Interface::receiver) {
+            text += fmt::format("#define {}_HAS_RECEPTOR {}\n", info->name, info->has_receptor ? 1 : 0);
+            if (!info->has_receptor)
+                text +=
+                    fmt::format("#define {}_receptor(r, origin, direction) no_receptor_hit()\n", info->name);
+            if (!info->is_far)
+                text += fmt::format("#define {}_far(r, direction, film_aspect) no_receiver_sample()\n",
+                                    info->name);
+        }
         if (interface.interface == Interface::medium && !info->is_crystal)
             text += fmt::format("#define {}_crystal(r) isotropic_medium(1.0)\n", info->name);
         if (interface.interface == Interface::phase && !info->says_polarization)

@@ -52,11 +52,14 @@ struct Parameter {
 struct ClassInfo {
     Interface interface = Interface::surface;
     uint32_t tag = 0;
-    std::string record, name, file;    // struct, class, GLSL file
-    std::string summary;               // the comment at the head of the file, without the example
-    std::string example;               // as it stands there, JSON; may be empty
-    bool says_polarization = false;    // NAME_mueller is there
-    bool is_crystal = false;           // NAME_crystal is there: it refracts doubly
+    std::string record, name, file;  // struct, class, GLSL file
+    std::string summary;             // the comment at the head of the file, without the example
+    std::string example;             // as it stands there, JSON; may be empty
+    bool says_polarization = false;  // NAME_mueller is there
+    bool is_crystal = false;         // NAME_crystal is there: it refracts doubly
+    bool has_aperture = false, has_receptor = false,
+         is_far = false;               // of receivers (interfaces/receiver.glsl)
+    std::string pixel_unit;            // of receivers; empty = a radiance
     bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization
     bool has_body_mueller = false;     // light leaves its body (shaders/features/body_mueller.glsl)
     bool has_general_mueller = false;  // its matrices are not of two blocks (shaders/lib/stokes.glsl)

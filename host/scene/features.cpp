@@ -11,6 +11,7 @@ Features Features::everything() {
     f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.textures = true;
     f.media = f.scattering = f.bending = f.interfaces = f.straight = f.light_tree = true;
     f.general_mueller = f.body_mueller = f.crystals = true;
+    f.apertures = f.far_receivers = f.receptors = true;
     f.body_count = most_bodies;
     f.light_count = 16;
     f.infinite_light_count = 2;
@@ -44,6 +45,10 @@ std::string Features::defines() const {
     define("HAS_CRYSTALS", crystals);
     define("HAS_BODY_MUELLER", body_mueller);
     define("HAS_POLARIZED_LIGHTS", polarization && polarized_lights);
+    define("HAS_APERTURES", apertures);
+    define("HAS_FAR_RECEIVERS", far_receivers);
+    define("HAS_RECEPTORS", receptors);
+    if (receptors) define("RECEPTOR_MATERIAL", receptor_material);
     define("HAS_DISPERSION", spectral && dispersion);
     if (spectral) define("SPECTRUM_COUNT", spectrum_count);
     if (spectral) define("COLOR_LATTICE", color_lattice);

@@ -29,10 +29,14 @@ struct Features {
     bool polarized_lights = false;  // some light is polarized from the start
     bool body_mueller = false;      // a class polarizes what its body sends out
     bool general_mueller =
-        false;                    // a class has matrices that are not of two blocks (shaders/lib/stokes.glsl)
-    bool crystals = false;        // some medium refracts doubly
-    bool dispersion = false;      // some refractive index depends on the wavelength
-    uint32_t spectrum_count = 0;  // room for so many
+        false;                   // a class has matrices that are not of two blocks (shaders/lib/stokes.glsl)
+    bool crystals = false;       // some medium refracts doubly
+    bool apertures = false;      // some receiver draws its rays from many (shaders/interfaces/receiver.glsl)
+    bool far_receivers = false;  // … is far away
+    bool receptors = false;      // … has a receptor, which is made of this material:
+    uint32_t receptor_material = 0;
+    bool dispersion = false;           // some refractive index depends on the wavelength
+    uint32_t spectrum_count = 0;       // room for so many
     bool independent_samples = false;  // hashes take the place of Sobol' points
     bool light_tree = false;
     uint32_t spectral_bins = 0;    // of a spectral image; set by the renderer

@@ -54,8 +54,14 @@ Scene SceneCompiler::run() {
     add_media();
     add_materials();
     upload_grids();
-    if (memory_.world.bounds.empty() && !in_.environment && options_.environment.empty())
-        fail_input("{}: the scene is empty: it has neither geometry nor an environment", in_.file.string());
+    if (memory_.world.bounds.empty() && !in_.environment && options_.environment.empty()) {
+        if (in_.lights.empty() || in_.receivers.empty())
+            fail_input(
+                "{}: the scene is empty: it has neither geometry nor an environment, nor a light with a "
+                "receiver",
+                in_.file.string());
+        out_.radius = 1;  // any will do
+    }
     add_receivers();
     add_lights();
     add_textures();
@@ -159,6 +165,8 @@ const ClassInfo& SceneCompiler::use_class(Interface interface, const ObjectDescr
     out_.features.general_mueller |= info->has_general_mueller || info->is_crystal;
     out_.features.crystals |= info->is_crystal;
     out_.features.body_mueller |= info->has_body_mueller;
+    out_.features.apertures |= info->has_aperture;
+    out_.features.far_receivers |= info->is_far;
     return *info;
 }
 

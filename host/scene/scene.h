@@ -24,8 +24,9 @@ namespace etendue {
 struct Receiver {
     std::string name;
     uint32_t ref = no_record;
-    float aspect_ratio = 0;     // of its image; 0 = the scene does not say
-    bool wants_stokes = false;  // S1 to S3, too
+    float aspect_ratio = 0;          // of its image; 0 = the scene does not say
+    uint32_t columns = 0, rows = 0;  // of its image, where the scene fixes them; else 0
+    bool wants_stokes = false;       // S1 to S3, too
     const ClassInfo* info = nullptr;
     nlohmann::json parameters;         // as in the scene file
     glm::dmat4 world_from_local{1.0};  // in the coordinates of the scene file

@@ -74,6 +74,7 @@ class SceneCompiler {
     void rank_bodies();
     void ask_opacity();
     uint32_t medium_ref(const std::string& name, const std::string& where);
+    bool has_receptors();
     void check_crystal_face(const MaterialDescription& m);
     void add_textures();
 

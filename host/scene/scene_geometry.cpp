@@ -94,6 +94,19 @@ void SceneCompiler::upload_world() {
     share("Transforms", memory_.world.transforms);
 }
 
+// Of classes with the parameter "resolution".
+static void fix_resolution(Receiver& receiver, const std::string& where) {
+    for (const Parameter& p : receiver.info->parameters) {
+        if (p.member.name != "resolution") continue;
+        const auto pixels =
+            receiver.parameters.value(p.member.name, p.default_value).get<std::vector<double>>();
+        for (const double n : pixels)
+            if (n != std::round(n))
+                fail_input("{}/resolution: {} is not a number of pixels; allowed: whole numbers", where, n);
+        receiver.columns = uint32_t(pixels.at(0)), receiver.rows = uint32_t(pixels.at(1));
+    }
+}
+
 void SceneCompiler::add_receivers() {
     std::vector<PlacedObject> all = in_.receivers;
     if (all.empty() && out_.radius > 0) {
@@ -114,8 +127,9 @@ void SceneCompiler::add_receivers() {
         const float aspect = object.parameters.value("aspect_ratio", 0.0f);
         object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
         added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local)));
-        out_.receivers.push_back({receiver.name, no_record, aspect, receiver.wants_stokes, added.back().info,
-                                  object.parameters, receiver.world_from_local});
+        out_.receivers.push_back({receiver.name, no_record, aspect, 0, 0, receiver.wants_stokes,
+                                  added.back().info, object.parameters, receiver.world_from_local});
+        fix_resolution(out_.receivers.back(), message_place(in_, object.where));
     }
     const auto refs = references(Interface::receiver, added);
     for (size_t i = 0; i < refs.size(); ++i) out_.receivers[i].ref = refs[i];

@@ -199,7 +199,7 @@ void SceneCompiler::scale_powers(std::vector<LightBounds>& bounds) {
         totals[memory_.world.primitives[area_primitives_[i]].material] += bounds[first_area_light_ + i].power;
     std::vector<float> scales(materials_.size(), 1.0f);
     bool changed = false;
-    for (size_t m = 0; m < materials_.size(); ++m) {
+    for (size_t m = 0; m < in_.materials.size(); ++m) {
         const auto& e = in_.materials[m].emission;
         if (!e || totals[m] <= 0 || (e->quantity != Quantity::power && e->quantity != Quantity::flux))
             continue;

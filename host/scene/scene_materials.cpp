@@ -70,6 +70,16 @@ void SceneCompiler::add_materials() {
         materials_.push_back(record);
         out_.material_names.push_back(m.name);
     }
+    if (has_receptors()) {
+        out_.features.receptors = true;
+        out_.features.receptor_material = uint32_t(materials_.size());
+        MaterialRecord white{};
+        white.inside = white.outside = white.emission_texture = white.normal_texture = white.body = no_record;
+        surfaces.push_back(add_record(Interface::surface, {"lambertian", {{"reflectance", {1, 1, 1}}}, ""}));
+        places.push_back(uint32_t(materials_.size()));
+        materials_.push_back(white);
+        out_.material_names.push_back("receptor");
+    }
     const auto refs = references(Interface::surface, surfaces);
     for (size_t i = 0; i < refs.size(); ++i) materials_[places[i]].surface = refs[i];
     out_.materials = materials_.size();
@@ -104,6 +114,13 @@ bool SceneCompiler::has_bodies() const {
     for (size_t i = 0; i < used.size(); ++i)
         if (used[i] && in_.materials[i].priority > 0) return true;
     return false;
+}
+
+// Receivers that need a material which no object has (shaders/features/receptors.glsl).
+bool SceneCompiler::has_receptors() {
+    return std::any_of(in_.receivers.begin(), in_.receivers.end(), [&](const PlacedObject& r) {
+        return find_class(Interface::receiver, r.object).has_receptor;
+    });
 }
 
 // Materials with a priority by their place in the order of priorities; the first of several of the same.

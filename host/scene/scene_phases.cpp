@@ -46,7 +46,8 @@ MieRef SceneCompiler::add_mie(const ClassInfo& info, const std::vector<std::byte
     const double size = largest_mie_size(p);
     if (!(size <= most_mie_size))
         fail_input(
-            "{}/radius: {:.4g} m; the largest of these spheres have the size parameter {:.0f}; allowed: at most "
+            "{}/radius: {:.4g} m; the largest of these spheres have the size parameter {:.0f}; allowed: at "
+            "most "
             "{}, "
             "a radius of {:.3g} m",
             message_place(in_, where), p.radius, size, most_mie_size, p.radius * most_mie_size / size);

@@ -31,8 +31,8 @@ void forget_event(inout Path path) {
     path.flags &= ~(PATH_STARTS | PATH_PARALLEL);
 }
 
-// Readies the path for its next ray and returns where that ends at the latest.
-float begin_ray(inout Path path) {
+// Readies the path for its next ray and returns where that ends at the latest (features/receptors.glsl: begin_ray).
+float begin_step(inout Path path) {
     float longest = path.bend.chord;
     path.bend.chord = INFINITY;
     uint medium = path.around.medium;
@@ -97,7 +97,7 @@ bool end_step_at(inout Path path, SurfacePoint p, float distance) {
 #define start_bending(path)
 #define is_bent(path) false
 #define bends_rays(medium) false
-#define begin_ray(path) INFINITY
+#define begin_step(path) INFINITY
 #define count_step(path, counters) true
 #define end_step(path) 0.0
 #define end_step_at(path, p, distance) true

@@ -85,6 +85,15 @@
 #ifndef HAS_POLARIZED_LIGHTS
 #define HAS_POLARIZED_LIGHTS 0
 #endif
+#ifndef HAS_APERTURES
+#define HAS_APERTURES 0
+#endif
+#ifndef HAS_RECEPTORS
+#define HAS_RECEPTORS 0
+#endif
+#ifndef HAS_FAR_RECEIVERS
+#define HAS_FAR_RECEIVERS 0
+#endif
 #ifndef HAS_DISPERSION
 #define HAS_DISPERSION 0
 #endif

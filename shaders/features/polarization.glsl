@@ -115,6 +115,9 @@ void polarize_shadow(inout ShadowRay shadow, Path path, ScatteringPoint s, Muell
     shadow.contribution *= through_event(shadow.polarization, m, event_frames(s, m, path.direction, shadow.direction));
 }
 
+// A shadow ray that carries on the path's own.
+void carry_polarization(inout ShadowRay shadow, Path path) { shadow.polarization = path.polarization; }
+
 // What a shadow ray passes straight through, at s.
 void polarize_passage(inout ShadowRay shadow, ScatteringPoint s) {
     s.context.importance = FORWARD == 1;
@@ -212,6 +215,7 @@ Received analysed(ShadowRay shadow, Spectrum brought) {
 #define polarize(path, s, mueller, leaving)
 #define prefer_azimuth(path, s, event)
 #define polarize_shadow(shadow, path, s, mueller)
+#define carry_polarization(shadow, path)
 #define polarize_passage(shadow, s)
 #define turn_polarization(path, before, after)
 #define keep_polarization(v, path)

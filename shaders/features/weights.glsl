@@ -29,6 +29,7 @@ float passage_of(Path path) { return path.passage; }
 
 // Weighs a connection. `others`: as far as they do not pass scattering media along it, which all of them must and it need not.
 void weigh(inout ShadowRay ray, float others) { ray.others = others; }
+void weigh_alone(inout ShadowRay ray) { ray.others = 0.0; }
 void lessen_others(inout ShadowRay ray, float passage) {
     if (medium_scatters(ray.around.medium)) ray.others *= passage;
 }
@@ -36,6 +37,7 @@ void lessen_others(inout ShadowRay ray, float passage) {
 #define start_passage(path)
 #define lessen_passage(path, passage)
 #define passage_of(path) 1.0
+#define weigh_alone(ray)
 #define weigh(ray, others) ray.contribution *= mis_weight(others)
 #define lessen_others(ray, passage)
 #endif

@@ -1,18 +1,31 @@
 // Receiver: where light is measured. A class NAME defines, for its record R:
 //
-//   CameraRay      NAME_emit(R r, vec2 film, float film_aspect)   the backward ray through a point of the film
+//   CameraRay      NAME_emit(R r, vec2 film, vec2 u, float film_aspect)   a backward ray through a point of the film; u draws it where
+//                               there are many, of which `#define NAME_HAS_APERTURE` tells, else it is unused
 //   ReceiverSample NAME_connect(R r, vec3 point, vec2 u, float film_aspect)   a way from a point to the receiver. Its density
-//                               / pdf is the importance: a point that sends the intensity I (W/sr) that way adds
-//                               I * density / pdf to the mean over the film
+//                               * weight / pdf is the importance: a point that sends the intensity I (W/sr) that way adds
+//                               I * density * weight / pdf to the mean over the film
 //   float          NAME_footprint(R r, vec3 point, float film_aspect, out float slope)   square root of the area that the whole
 //                               film covers at the point's distance, m; > 0, continuous, also for points out of view; `slope` is the
 //                               most by which it changes over a metre, m/m
+//
+// and where it has them:
+//
+//   ReceptorHit    NAME_receptor(R r, vec3 origin, vec3 direction)   where light that passes on the ray is caught: all paths of this
+//                               receiver end at its receptor, a white diffuse plane that nothing else sees (features/receptors.glsl)
+//   ReceiverSample NAME_far(R r, vec3 direction, float film_aspect)   what light that leaves the scene along `direction` adds: the flux F
+//                               adds F * density * weight to the mean over the film; pdf is 1
+//
+// A pixel is a radiance, or what the line "A pixel: UNIT." of the class's comment says.
 //
 // Every record begins with the Placement of the node.
 //
 // `film` runs over [0,1]², x to the right, y down; film_aspect = width / height of the image. World space; node transforms
 // may scale, shear and mirror.
+#include "features/defaults.glsl"
+#include "lib/accurate_math.glsl"
 #include "lib/constants.glsl"
+#include "lib/frames.glsl"
 #include "lib/records.glsl"
 #include "lib/stokes.glsl"
 #include "lib/warps.glsl"
@@ -25,6 +38,7 @@ struct CameraRay {
                         // parallel rays, across them
     float connect_pdf;  // of `connect` choosing this ray from a point at distance d on it: connect_pdf d², or connect_pdf
     bool is_parallel;   // where this is set
+    bool at_receptor;   // the ray starts at the receptor, from above
 };
 
 struct ReceiverSample {
@@ -32,10 +46,18 @@ struct ReceiverSample {
     float distance;   // m
     vec2 film;        // [0,1]²
     float density;    // as CameraRay.density, of the ray that arrives
-    float pdf;        // distance², m²; parallel rays: 1; 0 = the receiver does not see the point
+    float weight;     // as CameraRay.weight
+    float pdf;        // CameraRay.connect_pdf distance², or of parallel rays connect_pdf; 0 = the receiver does not see the point
 };
 
-ReceiverSample no_receiver_sample() { return ReceiverSample(vec3(0, 0, 1), 0.0, vec2(0), 0.0, 0.0); }
+ReceiverSample no_receiver_sample() { return ReceiverSample(vec3(0, 0, 1), 0.0, vec2(0), 0.0, 1.0, 0.0); }
+
+struct ReceptorHit {
+    float t;      // m; INFINITY = the ray does not meet it from the front
+    vec3 normal;  // unit
+};
+
+ReceptorHit no_receptor_hit() { return ReceptorHit(INFINITY, vec3(0, 0, 1)); }
 
 // The signed volume that the columns span.
 float frame_volume(mat3 m) { return dot(cross(m[0], m[1]), m[2]); }
@@ -49,10 +71,10 @@ vec3 scaled_local(mat3 m, vec3 v) {
 
 #include "generated/receiver_classes.glsl"
 
-CameraRay receiver_emit(uint ref, vec2 film, float film_aspect) {
-    CameraRay result = CameraRay(vec3(0), vec3(0, 0, 1), 0.0, 0.0, 1.0, false);
+CameraRay receiver_emit(uint ref, vec2 film, vec2 u, float film_aspect) {
+    CameraRay result = CameraRay(vec3(0), vec3(0, 0, 1), 0.0, 0.0, 1.0, false, false);
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_emit(name##_record(record_index(ref)), film, film_aspect); break;
+#define CASE(tag, Struct, name) case tag: result = name##_emit(name##_record(record_index(ref)), film, u, film_aspect); break;
         RECEIVER_CLASSES(CASE)
 #undef CASE
     }
@@ -68,6 +90,40 @@ ReceiverSample receiver_connect(uint ref, vec3 point, vec2 u, float film_aspect)
     }
     return result;
 }
+
+#if HAS_RECEPTORS
+bool has_receptor(uint ref) {
+    bool result = false;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_HAS_RECEPTOR == 1; break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+ReceptorHit receiver_receptor(uint ref, vec3 origin, vec3 direction) {
+    ReceptorHit result = no_receptor_hit();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_receptor(name##_record(record_index(ref)), origin, direction); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+#endif
+
+#if HAS_FAR_RECEIVERS
+ReceiverSample receiver_far(uint ref, vec3 direction, float film_aspect) {
+    ReceiverSample result = no_receiver_sample();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_far(name##_record(record_index(ref)), direction, film_aspect); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+#endif
 
 // x of the frame of light that arrives against `direction`, a receiver's ray: y of its node, as the ray sees it, stands upright.
 vec3 receiver_stokes_axis(uint ref, vec3 direction) {

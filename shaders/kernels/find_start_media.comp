@@ -63,7 +63,7 @@ bool begin_witness(uint question, uint k, bool is_first, out Witness w) {
     w.knows = false;
     w.light = NO_RECORD - 1u;  // not that of surfaces that are no lights
     if (question == 0u) {
-        w.origin = receiver_emit(receiver, u_position, film_aspect).origin;
+        w.origin = receiver_emit(receiver, u_position, u_direction, film_aspect).origin;
         return true;
     }
     if (OF_LIGHTS == 0) return false;

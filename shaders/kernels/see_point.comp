@@ -20,7 +20,7 @@ struct SeenPoint {
 layout(scalar, set = 0) writeonly buffer SeenPoints { SeenPoint seen_points[]; };
 
 void main() {
-    CameraRay ray = receiver_emit(receiver, vec2(film_x, film_y), film_aspect);
+    CameraRay ray = receiver_emit(receiver, vec2(film_x, film_y), vec2(0.5), film_aspect);
     SeenPoint seen = SeenPoint(0u, vec3(0), vec3(0), 0.0, 0u, NO_RECORD);
     Path path = emit_camera_ray(receiver, uvec2(0), uvec2(1), 0u, 0u);
     path.origin = ray.origin, path.direction = ray.direction;

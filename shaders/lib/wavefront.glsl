@@ -4,6 +4,7 @@
 // Forward, slots are dealt to consecutive paths of the pass; backward, to samples of pixels: slot = sample * tile_pixels + pixel
 // within the tile. The rays to trace stand apart, too: find_hits needs nothing else.
 #include "features/bending.glsl"
+#include "features/receptors.glsl"
 #include "lib/constants.glsl"
 #include "lib/hits.glsl"
 #include "lib/path.glsl"

@@ -24,10 +24,11 @@ float perspective_density(mat3 f, vec3 w) {
     return volume > 0.0 ? 1.0 / volume : 0.0;
 }
 
-CameraRay perspective_emit(PerspectiveCamera r, vec2 film, float film_aspect) {
+CameraRay perspective_emit(PerspectiveCamera r, vec2 film, vec2 u, float film_aspect) {
     mat3 f = perspective_frame(r, film_aspect);
     vec3 w = f * vec3(2.0 * film.x - 1.0, 1.0 - 2.0 * film.y, 1.0);
-    return CameraRay(r.placement.world_from_local[3], normalize(w), 1.0, perspective_density(f, w), 1.0, false);
+    return CameraRay(r.placement.world_from_local[3], normalize(w), 1.0, perspective_density(f, w), 1.0, false,
+                     false);
 }
 
 ReceiverSample perspective_connect(PerspectiveCamera r, vec3 point, vec2 u, float film_aspect) {
@@ -39,7 +40,7 @@ ReceiverSample perspective_connect(PerspectiveCamera r, vec3 point, vec2 u, floa
     if (any(greaterThan(abs(at), vec2(1)))) return no_receiver_sample();
     float distance = length(d);
     return ReceiverSample(-d / distance, distance, vec2(0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y),
-                          perspective_density(f, f * vec3(at, 1.0)), distance * distance);
+                          perspective_density(f, f * vec3(at, 1.0)), 1.0, distance * distance);
 }
 
 // The solid angle of the whole film as if it were small, at the distance of the point but for one that no scene resolves.

@@ -1,6 +1,7 @@
 // What the ray of a path comes to: a point of its medium where it scatters, a surface, or nothing; whichever way it goes.
 #include "features/bending.glsl"
 #include "features/faces.glsl"
+#include "features/receptors.glsl"
 #include "lib/events.glsl"
 #include "lib/traversal.glsl"
 
@@ -9,6 +10,7 @@ struct Arrival {
     bool lives;
     bool scatters;   // at a point of the medium
     bool escapes;    // there is nothing; p is undefined
+    bool caught;     // at a receptor
     SurfacePoint p;
     Crossing sides;  // of p
 };
@@ -18,13 +20,18 @@ Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, 
     Arrival a;
     a.is_event = a.lives = true;
     a.scatters = scatters;
-    a.escapes = !scatters && hit.primitive == NO_RECORD;
+    a.caught = !scatters && is_caught(path, hit);
+    a.escapes = !scatters && !a.caught && hit.primitive == NO_RECORD;
     a.sides = no_crossing(path.around);
     if (HAS_SCATTERING == 1 && scatters) {
         a.p = volume_point(path.origin + hit.t * path.direction, path.direction);
     } else if (!a.escapes) {
-        a.p = locate(hit, path.origin, path.direction);
-        a.sides = meet_faces(path.origin, path.direction, path.around, hit, a.p);
+        if (a.caught) {
+            a.p = receptor_point(path);
+        } else {
+            a.p = locate(hit, path.origin, path.direction);
+            a.sides = meet_faces(path.origin, path.direction, path.around, hit, a.p);
+        }
         if (is_bent(path) && !end_step_at(path, a.p, hit.t)) {
             path.throughput = carried;
             a.is_event = false;

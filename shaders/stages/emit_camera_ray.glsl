@@ -12,7 +12,9 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     Path path;
     path.random = start_sampler(pixel, sample_index, seed);
     vec2 film = (vec2(pixel) + sample_2d(path.random)) / vec2(size);
-    CameraRay ray = receiver_emit(receiver, film, float(size.x) / float(size.y));
+    vec2 u = vec2(0.5);
+    if (HAS_APERTURES == 1) u = sample_2d(path.random);
+    CameraRay ray = receiver_emit(receiver, film, u, float(size.x) / float(size.y));
     path.origin = ray.origin;
     path.direction = ray.direction;
     path.throughput = Spectrum(ray.weight);
@@ -21,7 +23,7 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.pdf = 0.0;
     path.around = around_receiver();
     path.depth = 0u;
-    path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
+    path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u) | (ray.at_receptor ? PATH_TO_RECEPTOR : 0u);
     start_rows(path, receiver);
     start_mode(path);
     start_bending(path);

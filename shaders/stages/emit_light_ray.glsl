@@ -2,6 +2,7 @@
 #include "features/bending.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
+#include "features/receptors.glsl"
 #include "features/recording.glsl"
 #include "features/start_media.glsl"
 #include "interfaces/light_source.glsl"
@@ -26,6 +27,7 @@ Path emit_light_ray(uint index) {
     path.depth = 0u;
     path.flags = PATH_STARTS;
     path.vertices = uvec2(NO_RECORD, 0u);
+    start_smooth(path, ray.is_delta);
     start_stokes(path, light);
     start_mode(path);
     start_bending(path);

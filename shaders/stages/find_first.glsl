@@ -1,5 +1,6 @@
 // What a path meets first, along bent rays and past faces that are not there.
 #include "features/bending.glsl"
+#include "features/receptors.glsl"
 #include "features/faces.glsl"
 #include "lib/scattering.glsl"
 #include "lib/traversal.glsl"

@@ -3,6 +3,14 @@
 #include "lib/events.glsl"
 #include "stages/arrive.glsl"
 
+const float ALREADY_THERE = 1e-30;  // length of a ray whose end nothing hides
+
+uint pixel_of(vec2 film) {
+    uvec2 size = uvec2(forward_pass.width, forward_pass.height);
+    uvec2 pixel = min(uvec2(film * vec2(size)), size - 1u);
+    return pixel.y * size.x + pixel.x;
+}
+
 // The ray that brings light from the point to the receiver.
 ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, ReceiverSample r, Scattering pair,
                            VertexMis mis) {
@@ -10,14 +18,31 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
     if (is_black(pair.value) || !is_seen_from(s, r.direction) || !(frame > 0.0)) return no_shadow_ray();
     float importance = r.density * pixel_count() / r.pdf;  // of one pixel
     float others = others_of_receiver_sample(path, s, r.direction, importance, pair, mis);
-    Spectrum contribution = path.throughput * pair.value *
-                            (adjoint_correction(s, -path.direction, r.direction) / frame * importance * forward_pass.path_flux);
+    Spectrum contribution = path.throughput * pair.value * (adjoint_correction(s, -path.direction, r.direction) / frame *
+                                                            importance * r.weight * forward_pass.path_flux);
     ShadowRay shadow = shadow_ray(path, p, s, pair, r.direction, r.distance, contribution, others);
-    uvec2 size = uvec2(forward_pass.width, forward_pass.height);
-    uvec2 pixel = min(uvec2(r.film * vec2(size)), size - 1u);
-    shadow.target = pixel.y * size.x + pixel.x;
+    shadow.target = pixel_of(r.film);
     return shadow;
 }
+
+// Light that leaves the scene, for a receiver far away.
+#if HAS_FAR_RECEIVERS
+ShadowRay reach_far(Path path) {
+    ReceiverSample r = receiver_far(forward_pass.receiver, path.direction, film_aspect());
+    if ((path.flags & PATH_SMOOTH) == 0u || !(r.pdf > 0.0)) return no_shadow_ray();
+    ShadowRay shadow = no_shadow_ray();
+    shadow.contribution = path.throughput * (r.density * r.weight * pixel_count() * forward_pass.path_flux);
+    shadow.origin = path.origin;
+    shadow.direction = path.direction;
+    shadow.t_max = ALREADY_THERE;
+    carry_polarization(shadow, path);
+    weigh_alone(shadow);
+    shadow.target = pixel_of(r.film);
+    return shadow;
+}
+#else
+#define reach_far(path) no_shadow_ray()
+#endif
 
 // The event itself. Returns whether the path goes on.
 bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out uint kind, out ShadowRay shadow) {
@@ -29,14 +54,20 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
     part_at_interface(path, s.disperses);
     bool is_delta = is_delta_point(s);
     VertexMis mis = vertex_mis(path, p, s);
-    if (!is_delta) store_vertex(path, path_index, p, s, hit, mis);
+    if (a.caught) mis.merging = 0.0;
+    if (!is_delta && !a.caught) store_vertex(path, path_index, p, s, hit, mis);
     // connect_receiver, scatter_surfaces
-    ReceiverSample r = ReceiverSample(vec3(0, 0, 1), 0.0, vec2(0), 0.0, 0.0);
-    if (!is_delta) r = receiver_connect(forward_pass.receiver, p.position, sample_2d(path.random), film_aspect());
+    ReceiverSample r = no_receiver_sample();
+    if (!is_delta && is_for_receiver(a.caught)) r = receiver_connect(forward_pass.receiver, p.position, sample_2d(path.random), film_aspect());
     vec3 wi = r.direction * s.frame;
     SurfaceEvent event = scattering_event(s, wi, wi, 1u, sample_3d(path.random));
     if (r.pdf > 0.0 && is_on_one_side(s, r.direction, wi))
         shadow = connect_receiver(path, p, s, r, event.pair, mis);
+    if (a.caught) {
+        shadow.t_max = ALREADY_THERE;
+        pass_receptor(path, p);
+        return true;
+    }
     kind = event.next.event;
     return follow_sample(path, p, s, event, mis);
 }
@@ -56,7 +87,8 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
     counters.absorbed += carried - left;
     if (a.is_event && a.escapes) {
         counters.escaped += left;
+        shadow = reach_far(path);
         return false;
     }
-    return is_event && goes_on ? continue_path(path, kind, counters) : goes_on;
+    return is_event && goes_on && !a.caught ? continue_path(path, kind, counters) : goes_on;
 }

@@ -76,6 +76,7 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     part_at_interface(path, s.disperses);
     bool is_delta = is_delta_point(s);
     VertexMis mis = vertex_mis(path, p, s);
+    if (a.caught) mis.merging = 0.0;
     // connect_lights, scatter_surfaces
     LightSample l = no_light_sample();
     uint light = 0u;

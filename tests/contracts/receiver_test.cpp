@@ -30,15 +30,17 @@ struct Connected {
     glm::vec3 direction;
     float distance;
     glm::vec2 film;
-    float density, pdf, footprint;
+    float density, weight, pdf, footprint;
 };
 
 const char* const text = R"(
+    #define SCENE_RADIUS 3.0
     #include "interfaces/receiver.glsl"
     layout(local_size_x = 64) in;
     struct Emitted { vec3 origin; float weight; vec3 direction; float density, connect_pdf; uint is_parallel; };
-    struct Connected { vec3 direction; float distance; vec2 film; float density, pdf, footprint; };
+    struct Connected { vec3 direction; float distance; vec2 film; float density, weight, pdf, footprint; };
     layout(scalar, set = 0) readonly buffer Places { vec3 places[]; };
+    layout(scalar, set = 0) readonly buffer Draws { vec2 draws[]; };
     layout(scalar, set = 0) writeonly buffer EmittedRays { Emitted emitted[]; };
     layout(scalar, set = 0) writeonly buffer Connections { Connected connected[]; };
     layout(push_constant) uniform Push { uint count, receiver, mode; float aspect; };
@@ -46,12 +48,14 @@ const char* const text = R"(
         uint i = gl_GlobalInvocationID.x;
         if (i >= count) return;
         if (mode == 0u) {
-            CameraRay r = receiver_emit(receiver, places[i].xy, aspect);
+            CameraRay r = receiver_emit(receiver, places[i].xy, draws[i], aspect);
             emitted[i] = Emitted(r.origin, r.weight, r.direction, r.density, r.connect_pdf, uint(r.is_parallel));
         } else {
-            ReceiverSample s = receiver_connect(receiver, places[i], vec2(0.5), aspect);
+            ReceiverSample s;
+            if (mode == 1u) s = receiver_connect(receiver, places[i], draws[i], aspect);
+            else s = receiver_far(receiver, places[i], aspect);
             float slope;
-            connected[i] = Connected(s.direction, s.distance, s.film, s.density, s.pdf,
+            connected[i] = Connected(s.direction, s.distance, s.film, s.density, s.weight, s.pdf,
                                      receiver_footprint(receiver, places[i], aspect, slope));
         }
     }
@@ -63,6 +67,9 @@ struct Configuration {
     glm::dmat4 node;
     double aspect = 1.5;
     double tolerance = 3e-5;  // of places on the film: the rounding of points over the size of the view
+    bool sees_all = false;    // there is no direction beyond the film
+    bool is_sharp = true;     // a point of the film is a ray
+    bool plane_film = true;   // straight lines look straight
 };
 
 // Random rotations and places, by themselves and after what is no rigid motion.
@@ -70,6 +77,11 @@ std::vector<Configuration> configurations(const std::string& name) {
     json parameters;
     if (name == "perspective") parameters = {{"yfov", 0.8}};
     if (name == "orthographic") parameters = {{"ymag", 0.7}};
+    if (name == "thin_lens") parameters = {{"yfov", 0.8}, {"focus", 2.5}, {"aperture", 0.3}};
+    if (name == "panorama") parameters = json::object();
+    if (name == "luminance_meter") parameters = {{"angle", 0.9}};
+    if (name == "illuminance") parameters = {{"size", {1.2, 0.8}}};
+    if (name == "intensity") parameters = {{"resolution", {16, 8}}};
     if (parameters.is_null()) return {};
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
@@ -99,6 +111,11 @@ std::vector<Configuration> configurations(const std::string& name) {
         result.push_back({"small angle", {{"yfov", 2e-3}}, node(glm::dmat3(1)), 1.5, 1e-3});
         result.push_back({"made small", parameters, node(scale(1e-12, 1e-12, 1e-12))});
     }
+    for (Configuration& c : result) {
+        c.sees_all = name == "panorama" || name == "intensity";
+        c.is_sharp = name == "perspective" || name == "orthographic";
+        c.plane_film = !c.sees_all && name != "luminance_meter";
+    }
     return result;
 }
 
@@ -115,27 +132,40 @@ class ReceiverProbe {
         records.layout();
         records_ = create_buffer(test_device(), records.bytes(), "receiver records");
         ref_ = records.ref(*info, 0);
+        is_far = info->is_far, has_receptor = info->has_receptor;
         sources_.generated["generated/receiver_classes.glsl"] =
             class_header(interface_info(Interface::receiver), {info});
-        sources_.generated["probe_receiver.comp"] = text;
+        sources_.generated["probe_receiver.comp"] = "#define HAS_FAR_RECEIVERS 1\n" + std::string(text);
     }
-    std::vector<Emitted> emit(const std::vector<glm::dvec2>& film) {
+    bool is_far = false, has_receptor = false;
+    // `draws`: u of each; empty = the middle.
+    std::vector<Emitted> emit(const std::vector<glm::dvec2>& film, const std::vector<glm::vec2>& draws = {}) {
         std::vector<glm::vec3> places;
         for (const glm::dvec2& f : film) places.push_back({f.x, f.y, 0});
-        return run<Emitted>(0, "EmittedRays", places);
+        return run<Emitted>(0, "EmittedRays", places, draws);
     }
-    std::vector<Connected> connect(const std::vector<glm::vec3>& points) {
-        return run<Connected>(1, "Connections", points);
+    std::vector<Connected> connect(const std::vector<glm::vec3>& points,
+                                   const std::vector<glm::vec2>& draws = {}) {
+        return run<Connected>(1, "Connections", points, draws);
+    }
+    std::vector<Connected> far(const std::vector<glm::vec3>& directions) {
+        return run<Connected>(2, "Connections", directions, {});
     }
 
   private:
     template <class T>
-    std::vector<T> run(uint32_t mode, const char* results, const std::vector<glm::vec3>& places) {
+    std::vector<T> run(uint32_t mode, const char* results, const std::vector<glm::vec3>& places,
+                       std::vector<glm::vec2> draws) {
+        draws.resize(places.size(), glm::vec2(0.5f));
         const uint32_t count = uint32_t(places.size());
         const Buffer in = create_buffer(test_device(), places, "places"),
+                     numbers = create_buffer(test_device(), draws, "draws"),
                      out(test_device(), count * sizeof(T), results), none(test_device(), 4, "none");
-        BufferTable buffers = {
-            {"ReceiverRecords", &records_}, {"Places", &in}, {"EmittedRays", &none}, {"Connections", &none}};
+        BufferTable buffers = {{"ReceiverRecords", &records_},
+                               {"Places", &in},
+                               {"Draws", &numbers},
+                               {"EmittedRays", &none},
+                               {"Connections", &none}};
         buffers[results] = &out;
         const Kernel kernel(test_device(), compile_shader(sources_, "probe_receiver.comp"), buffers);
         CommandList list(test_device());
@@ -171,6 +201,12 @@ std::vector<glm::dvec2> random_film(size_t count, uint32_t seed, double lo = 0, 
     return film;
 }
 
+std::vector<glm::vec2> random_draws(size_t count, uint32_t seed) {
+    std::vector<glm::vec2> draws;
+    for (const glm::dvec2& u : random_film(count, seed)) draws.push_back(glm::vec2(u));
+    return draws;
+}
+
 double solid_angle(const glm::dvec3& a, const glm::dvec3& b,
                    const glm::dvec3& c) {  // Van Oosterom & Strackee 1983
     return 2 * std::atan2(std::abs(glm::dot(a, glm::cross(b - a, c - a))),
@@ -189,23 +225,27 @@ TEST_CASE("receiver: every registered class has a configuration to be tested wit
 
 TEST_CASE("receiver: a point on a ray is connected along that ray, and no other point is") {
     for_every_receiver([](ReceiverProbe& probe, const Configuration& c) {
-        const auto film = random_film(20000, 5, -0.2, 1.2);
-        const auto rays = probe.emit(film);
+        const auto film = c.sees_all ? random_film(20000, 5, 0.03, 0.97) : random_film(20000, 5, -0.2, 1.2);
+        std::vector<glm::vec2> draws = random_draws(film.size(), 8);
+        const auto rays = probe.emit(film, draws);
         std::vector<glm::vec3> points, behind;
         for (size_t i = 0; i < film.size(); ++i) {
-            const float far = std::exp(float(i % 7) - 1);
+            const float far = probe.has_receptor ? 0 : std::exp(float(i % 7) - 1);
+            if (probe.is_far) draws[i] = glm::vec2(film[i]);  // what draws its connection
             points.push_back(rays[i].origin + far * rays[i].direction);
             behind.push_back(rays[i].origin - far * rays[i].direction);
         }
-        const auto connected = probe.connect(points), unseen = probe.connect(behind);
-        double worst_film = 0, worst_direction = 0, worst_density = 0, worst_distance = 0, worst_pdf = 0;
+        const auto connected = probe.connect(points, draws), unseen = probe.connect(behind, draws);
+        const bool asks_sight = c.plane_film && !probe.has_receptor;
+        double worst_film = 0, worst_direction = 0, worst_density = 0, worst_distance = 0, worst_pdf = 0,
+               worst_weight = 0;
         uint32_t wrong_sight = 0;
         for (size_t i = 0; i < film.size(); ++i) {
-            wrong_sight += unseen[i].pdf != 0;
+            wrong_sight += asks_sight && unseen[i].pdf != 0;
             const glm::dvec2 edge = glm::min(film[i], 1.0 - film[i]);
             const double inside = std::min(edge.x, edge.y);  // distance from the edge, negative beyond it
             if (std::abs(inside) < c.tolerance) continue;
-            wrong_sight += (connected[i].pdf > 0) != (inside > 0);
+            wrong_sight += asks_sight && (connected[i].pdf > 0) != (inside > 0);
             if (!(connected[i].pdf > 0) || inside < 0) continue;
             const Connected& s = connected[i];
             const double distance = glm::length(glm::dvec3(points[i]) - glm::dvec3(rays[i].origin));
@@ -213,7 +253,9 @@ TEST_CASE("receiver: a point on a ray is connected along that ray, and no other 
             worst_direction = std::max(worst_direction,
                                        glm::length(glm::dvec3(s.direction) + glm::dvec3(rays[i].direction)));
             worst_density = std::max(worst_density, std::abs(s.density / double(rays[i].density) - 1));
-            worst_distance = std::max(worst_distance, std::abs(s.distance / distance - 1));
+            worst_weight = std::max(worst_weight, std::abs(s.weight / double(rays[i].weight) - 1));
+            if (!probe.is_far && !probe.has_receptor)
+                worst_distance = std::max(worst_distance, std::abs(s.distance / distance - 1));
             const double pdf = double(rays[i].connect_pdf) * (rays[i].is_parallel ? 1 : distance * distance);
             worst_pdf = std::max(worst_pdf, std::abs(s.pdf / pdf - 1));
         }
@@ -223,6 +265,7 @@ TEST_CASE("receiver: a point on a ray is connected along that ray, and no other 
         CHECK(worst_density < 3e-5);
         CHECK(worst_distance < 1e-5);
         CHECK(worst_pdf < 2e-5);
+        CHECK(worst_weight < 1e-6);
     });
 }
 
@@ -246,12 +289,16 @@ TEST_CASE("receiver: the density is that of the rays which leave the film") {
                 const auto origin = [&](uint32_t k) { return glm::dvec3(at[k].origin); };
                 const auto direction = [&](uint32_t k) { return glm::dvec3(at[k].direction); };
                 const double size =
-                    r.is_parallel
+                    r.is_parallel && !probe.is_far
                         ? std::abs(glm::dot(glm::cross(origin(b) - origin(a), origin(d) - origin(a)),
                                             glm::dvec3(r.direction)))
                         : solid_angle(direction(a), direction(b), direction(e)) +
                               solid_angle(direction(a), direction(e), direction(d));
-                const double share = r.density * size;
+                double share = r.density * size;
+                if (probe.is_far)
+                    share *= r.weight;  // over all places
+                else if (!r.is_parallel)
+                    share /= r.connect_pdf;
                 total += share;
                 worst = std::max(worst, std::abs(share * n * n - 1));
             }
@@ -260,21 +307,45 @@ TEST_CASE("receiver: the density is that of the rays which leave the film") {
     });
 }
 
+TEST_CASE("receiver: light that leaves towards a far receiver comes to the film where its rays come from") {
+    for_every_receiver([](ReceiverProbe& probe, const Configuration&) {
+        if (!probe.is_far) return;
+        const auto film = random_film(20000, 11);
+        const auto rays = probe.emit(film, random_draws(film.size(), 12));
+        std::vector<glm::vec3> directions;
+        for (const Emitted& r : rays) directions.push_back(-r.direction);
+        const auto seen = probe.far(directions);
+        size_t other = 0;
+        for (size_t i = 0; i < film.size(); ++i) {
+            const double along = std::abs(seen[i].film.x - film[i].x);
+            const double response =
+                double(seen[i].density) * seen[i].weight / (double(rays[i].density) * rays[i].weight);
+            // Near the ends of rows the one or the other.
+            other += std::min(along, 1 - along) > 1e-3 || std::abs(seen[i].film.y - film[i].y) > 2e-4 ||
+                     std::abs(response - 1) > 1e-4;
+        }
+        CHECK(other < film.size() / 200);
+    });
+}
+
 TEST_CASE(
     "receiver: a patch of radiance seen through connections gives the mean of the film that rays give") {
     size_t tests = 0;
     for_every_receiver([&](ReceiverProbe&, const Configuration&) { ++tests; });
     const double level = sidak_level(false_alarm, tests);
-    for_every_receiver([&](ReceiverProbe& probe, const Configuration&) {
-        // A tilted parallelogram across a corner of the view.
-        const auto marks = probe.emit({{0.1, 0.2}, {0.9, 0.1}, {0.3, 1.3}});
+    for_every_receiver([&](ReceiverProbe& probe, const Configuration& c) {
+        if (probe.has_receptor) return;  // sees nothing but it
+        // A tilted parallelogram across a corner of the view, or where that is no plane within it.
+        const bool plane = c.plane_film;
+        const auto marks = plane ? probe.emit({{0.1, 0.2}, {0.9, 0.1}, {0.3, 1.3}})
+                                 : probe.emit({{0.4, 0.4}, {0.6, 0.35}, {0.45, 0.7}});
         const auto on = [&](int i, double far) {
             return glm::dvec3(marks[i].origin) + far * glm::dvec3(marks[i].direction);
         };
         const glm::dvec3 corner = on(0, 2), side = on(1, 2.5) - corner, other = on(2, 3) - corner;
         const glm::dvec3 cross = glm::cross(side, other), normal = glm::normalize(cross);
         Moments met, connected;
-        for (const Emitted& r : probe.emit(random_film(1 << 18, 6))) {
+        for (const Emitted& r : probe.emit(random_film(1 << 18, 6), random_draws(1 << 18, 9))) {
             const glm::dvec3 d(r.direction), o = glm::dvec3(r.origin) - corner;
             const glm::dvec3 p = o - d * (glm::dot(o, normal) / glm::dot(d, normal));
             const double u = glm::dot(glm::cross(p, other), cross) / glm::dot(cross, cross),
@@ -285,22 +356,23 @@ TEST_CASE(
         std::vector<glm::vec3> points;
         for (const glm::dvec2& f : random_film(1 << 18, 7))
             points.push_back(corner + f.x * side + f.y * other);
-        for (const Connected& s : probe.connect(points)) {
+        for (const Connected& s : probe.connect(points, random_draws(1 << 18, 10))) {
             // The intensity of the whole patch if all of it were here; radiance 1.
             const double intensity = std::abs(glm::dot(cross, glm::dvec3(s.direction)));
-            connected.add(s.pdf > 0 ? intensity * s.density / s.pdf : 0);
+            connected.add(s.pdf > 0 ? intensity * s.density * s.weight / s.pdf : 0);
         }
         CAPTURE(met.mean);
         CAPTURE(connected.mean);
-        CHECK(met.mean > 0.2);
-        CHECK(met.mean < 0.8);
+        CHECK(met.mean > (c.is_sharp ? 0.2 : 0.005));
+        if (c.is_sharp) CHECK(met.mean < 0.8);
         CHECK(z_test(met.mean, connected.mean, std::hypot(met.standard_error(), connected.standard_error()),
                      1e-4) > level);
     });
 }
 
 TEST_CASE("receiver: the footprint is the size of the view at a point's distance") {
-    for_every_receiver([](ReceiverProbe& probe, const Configuration&) {
+    for_every_receiver([](ReceiverProbe& probe, const Configuration& c) {
+        if (!c.plane_film) return;  // the film has no size there
         const Emitted middle = probe.emit({{0.5, 0.5}})[0];
         std::vector<glm::vec3> points = {middle.origin};
         for (float far : {-3.0f, 0.01f, 1.0f, 50.0f})
@@ -309,7 +381,8 @@ TEST_CASE("receiver: the footprint is the size of the view at a point's distance
         CHECK(connected[0].footprint > 0);  // at the receiver itself
         for (size_t i = 1; i < points.size(); ++i) {
             const double distance = glm::length(glm::dvec3(points[i]) - glm::dvec3(middle.origin));
-            const double expected = (middle.is_parallel ? 1 : distance) / std::sqrt(double(middle.density));
+            const double expected =
+                (middle.is_parallel ? 1 : distance) * std::sqrt(double(middle.connect_pdf / middle.density));
             CHECK(connected[i].footprint == doctest::Approx(expected).epsilon(1e-4));
         }
     });

@@ -15,6 +15,7 @@ struct Comparison {
     double largest_error = 0.005;  // that these may have, else the comparison says little
     float merge_radius = 0.1f;     // bias of merging grows with its square
     bool stokes = false;           // S0 to S3 are compared
+    std::string receiver = "";     // name; empty = the first
     bool unconnected = false;      // bidirectional rays whose vertices are not connected, too
 };
 
@@ -49,7 +50,7 @@ inline void check_agreement(const std::string& name, const Estimates& e, const E
 inline void check_against_backward(Scene& scene, const Comparison& c) {
     RenderPlan plan;
     plan.width = c.width, plan.height = c.height, plan.seeds = c.seeds;
-    plan.merge_radius = c.merge_radius, plan.stokes = c.stokes;
+    plan.merge_radius = c.merge_radius, plan.stokes = c.stokes, plan.receiver = c.receiver;
     plan.algorithm = Algorithm::backward, plan.passes = c.backward;
     const Estimates expected = render_estimates(scene, plan);
     const auto check = [&](Algorithm algorithm, uint32_t passes, uint32_t first_seed) {

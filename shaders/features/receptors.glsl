@@ -1,0 +1,92 @@
+// Receptors: planes at which receivers catch light. Backward paths start at theirs as if they had come to a white diffuse surface, so
+// that lights are sampled there and vertices connected; forward rays leave light there on their way, which goes on as if nothing
+// had happened. Nothing merges at receptors, since no vertices are stored there.
+//
+// Where a receptor coincides with a surface it lies on top: a forward ray is caught a margin before, from where it goes on.
+#include "features/bending.glsl"
+#include "interfaces/receiver.glsl"
+#include "lib/forward_pass.glsl"
+#include "lib/frames.glsl"
+#include "lib/hits.glsl"
+#include "lib/path.glsl"
+#include "lib/primitives.glsl"
+
+#if HAS_RECEPTORS
+float receptor_margin(vec3 origin, float t) {
+    vec3 a = abs(origin);
+    return 16.0 * EPSILON * (max(a.x, max(a.y, a.z)) + t);
+}
+
+// Readies the path for its next ray and returns where that ends at the latest.
+float begin_ray(inout Path path) {
+    float end = begin_step(path);
+#if FORWARD
+    path.flags &= ~PATH_TO_RECEPTOR;
+    if ((path.flags & PATH_PAST_RECEPTOR) != 0u) return end;
+    float t = receiver_receptor(forward_pass.receiver, path.origin, path.direction).t;
+    if (!(t < end)) return end;
+    path.flags |= PATH_TO_RECEPTOR;
+    return max(t - receptor_margin(path.origin, t), 0.0);
+#else
+    return (path.flags & PATH_TO_RECEPTOR) != 0u ? 0.0 : end;
+#endif
+}
+
+bool is_caught(Path path, Hit hit) { return (path.flags & PATH_TO_RECEPTOR) != 0u && hit.primitive == NO_RECORD; }
+
+// Where the path is caught.
+SurfacePoint receptor_point(Path path) {
+    SurfacePoint p;
+    p.position = path.origin;
+    p.geometric_normal = -path.direction;
+#if FORWARD
+    ReceptorHit r = receiver_receptor(forward_pass.receiver, path.origin, path.direction);
+    p.position += r.t * path.direction;
+    p.geometric_normal = r.normal;
+#endif
+    p.shading_normal = p.geometric_normal;
+    p.error = vec3(receptor_margin(p.position, 0.0));
+    p.tangent = vec4(frame_around(p.geometric_normal)[0], 1.0);
+    p.color = vec4(1);
+    p.uv0 = p.uv1 = vec2(0);
+    p.material = RECEPTOR_MATERIAL;
+    p.light = NO_RECORD;
+    return p;
+}
+
+void leave_receptor(inout Path path) { path.flags &= ~(PATH_TO_RECEPTOR | PATH_PAST_RECEPTOR); }
+
+#if FORWARD
+// Light goes on from a little before where it was caught.
+void pass_receptor(inout Path path, SurfacePoint p) {
+    path.origin = p.position - 2.0 * receptor_margin(p.position, distance(p.position, path.origin)) * path.direction;
+    path.flags |= PATH_PAST_RECEPTOR;
+}
+#endif
+
+#else
+#define begin_ray(path) begin_step(path)
+#define is_caught(path, hit) false
+#define receptor_point(path) volume_point(vec3(0), vec3(0))
+#define leave_receptor(path)
+#define pass_receptor(path, p)
+#endif
+
+// Does the receiver see the points of the scene, or those of its receptor?
+#if HAS_RECEPTORS && FORWARD
+bool is_for_receiver(bool caught) { return caught == has_receptor(forward_pass.receiver); }
+#else
+#define is_for_receiver(caught) true
+#endif
+
+// Receivers far away see light that leaves the scene. Where it has started at a point or as a beam, and met smooth surfaces alone,
+// nothing else brings it.
+#if HAS_FAR_RECEIVERS && FORWARD
+void start_smooth(inout Path path, bool is_delta) { path.flags |= is_delta ? PATH_SMOOTH : 0u; }
+void keep_smooth(inout Path path, uint event) {
+    if ((event & EVENT_DELTA) == 0u) path.flags &= ~PATH_SMOOTH;
+}
+#else
+#define start_smooth(path, is_delta)
+#define keep_smooth(path, event)
+#endif
