@@ -32,7 +32,9 @@ float begin_ray(inout Path path) {
 #endif
 }
 
-bool is_caught(Path path, Hit hit) { return (path.flags & PATH_TO_RECEPTOR) != 0u && hit.primitive == NO_RECORD; }
+bool is_caught(Path path, Hit hit, bool scatters) {
+    return (path.flags & PATH_TO_RECEPTOR) != 0u && hit.primitive == NO_RECORD && !scatters;
+}
 
 // Where the path is caught.
 SurfacePoint receptor_point(Path path) {
@@ -66,10 +68,9 @@ void pass_receptor(inout Path path, SurfacePoint p) {
 
 #else
 #define begin_ray(path) begin_step(path)
-#define is_caught(path, hit) false
+#define is_caught(path, hit, scatters) false
 #define receptor_point(path) volume_point(vec3(0), vec3(0))
 #define leave_receptor(path)
-#define pass_receptor(path, p)
 #endif
 
 // Does the receiver see the points of the scene, or those of its receptor?

@@ -20,7 +20,7 @@ Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, 
     Arrival a;
     a.is_event = a.lives = true;
     a.scatters = scatters;
-    a.caught = !scatters && is_caught(path, hit);
+    a.caught = is_caught(path, hit, scatters);
     a.escapes = !scatters && !a.caught && hit.primitive == NO_RECORD;
     a.sides = no_crossing(path.around);
     if (HAS_SCATTERING == 1 && scatters) {

@@ -23,7 +23,8 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.pdf = 0.0;
     path.around = around_receiver();
     path.depth = 0u;
-    path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u) | (ray.at_receptor ? PATH_TO_RECEPTOR : 0u);
+    path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
+    if (HAS_RECEPTORS == 1 && ray.at_receptor) path.flags |= PATH_TO_RECEPTOR;
     start_rows(path, receiver);
     start_mode(path);
     start_bending(path);

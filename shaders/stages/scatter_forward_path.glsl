@@ -27,10 +27,9 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
 
 // Light that leaves the scene, for a receiver far away.
 #if HAS_FAR_RECEIVERS
-ShadowRay reach_far(Path path) {
+void reach_far(Path path, inout ShadowRay shadow) {
     ReceiverSample r = receiver_far(forward_pass.receiver, path.direction, film_aspect());
-    if ((path.flags & PATH_SMOOTH) == 0u || !(r.pdf > 0.0)) return no_shadow_ray();
-    ShadowRay shadow = no_shadow_ray();
+    if ((path.flags & PATH_SMOOTH) == 0u || !(r.pdf > 0.0)) return;
     shadow.contribution = path.throughput * (r.density * r.weight * pixel_count() * forward_pass.path_flux);
     shadow.origin = path.origin;
     shadow.direction = path.direction;
@@ -38,10 +37,9 @@ ShadowRay reach_far(Path path) {
     carry_polarization(shadow, path);
     weigh_alone(shadow);
     shadow.target = pixel_of(r.film);
-    return shadow;
 }
 #else
-#define reach_far(path) no_shadow_ray()
+#define reach_far(path, shadow)
 #endif
 
 // The event itself. Returns whether the path goes on.
@@ -63,11 +61,13 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
     SurfaceEvent event = scattering_event(s, wi, wi, 1u, sample_3d(path.random));
     if (r.pdf > 0.0 && is_on_one_side(s, r.direction, wi))
         shadow = connect_receiver(path, p, s, r, event.pair, mis);
+#if HAS_RECEPTORS
     if (a.caught) {
         shadow.t_max = ALREADY_THERE;
         pass_receptor(path, p);
         return true;
     }
+#endif
     kind = event.next.event;
     return follow_sample(path, p, s, event, mis);
 }
@@ -87,7 +87,7 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
     counters.absorbed += carried - left;
     if (a.is_event && a.escapes) {
         counters.escaped += left;
-        shadow = reach_far(path);
+        reach_far(path, shadow);
         return false;
     }
     return is_event && goes_on && !a.caught ? continue_path(path, kind, counters) : goes_on;
