@@ -44,19 +44,6 @@ Grid read_grid(const TensorFile& file, const std::string& name, size_t dimension
     return grid;
 }
 
-// Numbers that rise, within [lo, hi].
-std::vector<double> read_list(const TensorFile& file, const std::string& name, double lo, double hi) {
-    const std::vector<float> values = file.floats(name, 1);
-    if (values.size() > most_map_points)
-        fail_input("{}: field {} has {} numbers; allowed: at most {}", file.name(), name, values.size(),
-                   most_map_points);
-    for (size_t i = 0; i < values.size(); ++i)
-        if (!(values[i] >= lo && values[i] <= hi) || (i > 0 && !(values[i] > values[i - 1])))
-            fail_input("{}: field {}: number {} is {}; allowed: numbers that rise, in [{:.6g}, {:.6g}]",
-                       file.name(), name, i, values[i], lo, hi);
-    return {values.begin(), values.end()};
-}
-
 MeasuredMap add_grid(MeasuredBsdf& bsdf, Grid grid, bool normalize) {
     widen(grid);
     return add_map(bsdf, grid.values, even_coordinates(grid.columns), even_coordinates(grid.rows), normalize);
@@ -80,11 +67,11 @@ MeasuredBsdf read_rgl_file(const std::filesystem::path& path) {
     const TensorFile file(path);
     const bool is_spectral = file.has("wavelengths");
     const std::string values_name = is_spectral ? "spectra" : "rgb";
-    std::vector<double> phi = read_list(file, "phi_i", -2 * pi - 1e-3, 2 * pi + 1e-3);
-    const std::vector<double> theta = read_list(file, "theta_i", 0, pi / 2 + 1e-3);
+    std::vector<double> phi = file.rising("phi_i", 1, -2 * pi - 1e-3, 2 * pi + 1e-3, most_map_points);
+    const std::vector<double> theta = file.rising("theta_i", 1, 0, pi / 2 + 1e-3, most_map_points);
     const std::vector<double> wavelengths =
-        is_spectral ? read_list(file, "wavelengths", 1, 1e6) : std::vector<double>();
-    const bool jacobian = file.field("jacobian", TensorType::uint8, 1).bytes[0] != std::byte(0);
+        is_spectral ? file.rising("wavelengths", 1, 1, 1e6, most_map_points) : std::vector<double>();
+    const bool jacobian = file.read<uint8_t>(file.field("jacobian", TensorType::uint8, 1), 0, 1)[0] != 0;
 
     Grid normals = read_grid(file, "ndf", 2), area = read_grid(file, "sigma", 2);
     Grid visible = read_grid(file, "vndf", 4), density = read_grid(file, "luminance", 4);

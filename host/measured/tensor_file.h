@@ -13,37 +13,53 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <map>
-#include <span>
 #include <string>
 #include <vector>
 
 namespace etendue {
 
-enum class TensorType : uint8_t { uint8 = 1, float32 = 10, float64 = 11 };
+enum class TensorType : uint8_t { uint8 = 1, uint16 = 3, float32 = 10, float64 = 11 };
 
 struct TensorField {
     TensorType type;
     std::vector<uint64_t> shape;
-    std::span<const std::byte> bytes;  // of all elements
+    uint64_t place, bytes;  // in the file, of all elements
 };
 
-// Reads the file whole. What is wrong in it fails with one line: the file, the field, what is allowed.
+// Reads what is asked for, when it is: fields may be larger than memory. What is wrong in the file fails with
+// one line: the file, the field, what is allowed.
 class TensorFile {
   public:
     explicit TensorFile(const std::filesystem::path& path);
-    TensorFile(std::vector<std::byte> bytes, std::string name);
 
     bool has(const std::string& field) const { return fields_.count(field) > 0; }
     // A field of that type and number of dimensions, none of them empty.
     const TensorField& field(const std::string& name, TensorType type, size_t dimensions) const;
-    // The numbers of such a field, each finite.
+    // `count` elements of such a field from element `first` on.
+    template <class T>
+    std::vector<T> read(const TensorField& field, uint64_t first, uint64_t count) const {
+        std::vector<T> values(count);
+        read_bytes(field.place + first * sizeof(T), count * sizeof(T), values.data());
+        return values;
+    }
+    // The numbers of a field of float32, each finite.
     std::vector<float> floats(const std::string& name, size_t dimensions) const;
+    // … which rise, at most `most` of them, within [lo, hi].
+    std::vector<double> rising(const std::string& name, size_t dimensions, double lo, double hi,
+                               size_t most) const;
     const std::string& name() const { return name_; }
 
   private:
+    void read_bytes(uint64_t place, uint64_t count, void* data) const;
+    template <class T>
+    T next();  // of the list of fields
+    std::string next_text(size_t length);
+
     std::string name_;
-    std::vector<std::byte> bytes_;
+    mutable std::ifstream stream_;
+    uint64_t size_ = 0, at_ = 0;
     std::map<std::string, TensorField> fields_;
 };
 
