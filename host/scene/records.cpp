@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "host/error.h"
-#include "host/scene/mueller_matrix.h"
+#include "host/measured/mueller_matrix.h"
 
 namespace etendue {
 namespace {

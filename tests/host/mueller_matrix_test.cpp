@@ -1,7 +1,9 @@
 // Which Mueller matrices are physical.
-#include "host/scene/mueller_matrix.h"
+#include "host/measured/mueller_matrix.h"
 
 #include <doctest/doctest.h>
+
+#include <cmath>
 
 using namespace etendue;
 
@@ -24,4 +26,25 @@ TEST_CASE("others are not, though they look so") {
     CHECK(!flaw_of({0.5, 0, 0, 0, 0, 0.6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}).empty());
     CHECK(!flaw_of({-0.1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}).empty());
     CHECK(!flaw_of({0, 0, 0, 0, 0, 0.1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}).empty());
+}
+
+TEST_CASE("what is unphysical loses its negative eigenvalues, what is physical stays") {
+    const MuellerMatrix polarizer = {0.5, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    CHECK(without_excess(polarizer) == polarizer);
+    // The inversion of S2 has the eigenvalues 1/2, 1/2, 1/2, -1/2.
+    const MuellerMatrix inverted = without_excess({3, 0, 0, 0, 0, 3, 0, 0, 0, 0, -3, 0, 0, 0, 0, 3});
+    const MuellerMatrix expected = {3, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+    for (size_t k = 0; k < 16; ++k)
+        CHECK(inverted[k] == doctest::Approx(expected[k]).scale(1).epsilon(1e-12));
+    // Elements of every kind: near to what they were, and physical.
+    MuellerMatrix m = {0.5, 0.2, 0.1, -0.3, 0.1, 0.3, 0.2, 0.1, -0.2, 0.1, 0.2, 0.4, 0.3, 0, -0.2, 0.1};
+    CHECK(!flaw_of(m).empty());
+    const MuellerMatrix kept = without_excess(m);
+    CHECK(kept[0] == doctest::Approx(0.5));
+    CHECK(flaw_of([&] {
+              MuellerMatrix dimmed = kept;
+              for (double& x : dimmed) x *= 0.5;
+              return dimmed;
+          }()) == "");
+    for (size_t k = 0; k < 16; ++k) CHECK(std::fabs(kept[k] - m[k]) < 0.25);
 }
