@@ -56,6 +56,14 @@ void check_reflectances(const dmat4& m, double s, double p, double phase) {
     check_block(m, (s - p) / sum, both * std::cos(phase), both * std::sin(phase));
 }
 
+// Part of unpolarized light along `to` that passes two ideal polarizers and what lies between them.
+double passing_part(const MuellerAnswer& first, const MuellerAnswer& sheet, const MuellerAnswer& second,
+                    const dvec3& to, int lane) {
+    const dmat4 whole = matrix(second, lane) * rotator(sheet.to, second.from, to) * matrix(sheet, lane) *
+                        rotator(first.to, sheet.from, to) * matrix(first, lane);
+    return 0.25 * whole[0][0];  // both in units of the 1/2 that they let through
+}
+
 }  // namespace
 
 TEST_CASE("glass polarizes what it reflects and refracts by Fresnel") {
@@ -149,12 +157,8 @@ TEST_CASE("a twisted nematic cell between polarizers along its directors") {
     // the three wavelengths.
     const auto crossed = [&](const SurfaceSurroundings& at, const glm::vec3& to, int lane) {
         const MuellerQuery q{-to, to, event_transmit | event_delta | event_straight};
-        const MuellerAnswer c = cell.polarize(0, at, {{q}})[0], a = sheets.polarize(0, at, {{q}})[0],
-                            b = sheets.polarize(1, at, {{q}})[0];
-        const dvec3 d = to;
-        const dmat4 whole = matrix(b, lane) * rotator(c.to, b.from, d) * matrix(c, lane) *
-                            rotator(a.to, c.from, d) * matrix(a, lane);
-        return 0.5 * whole[0][0];  // both sheets in units of the 1/2 that they let through
+        return 2 * passing_part(sheets.polarize(0, at, {{q}})[0], cell.polarize(0, at, {{q}})[0],
+                                sheets.polarize(1, at, {{q}})[0], to, lane);
     };
     // Gooch & Tarry 1975: sin²(pi/2 sqrt(1 + u²)) / (1 + u²), u = 2 d dn / lambda; the director on the side
     // of the normal lies along x, and light comes from there.
@@ -172,6 +176,39 @@ TEST_CASE("a twisted nematic cell between polarizers along its directors") {
         const glm::vec3 to(sine * std::cos(azimuth), sine * std::sin(azimuth), -std::sqrt(1 - sine * sine));
         CAPTURE(i);
         CHECK(crossed({1.55f, 1.55f}, to, 1) == doctest::Approx(expected[i]).epsilon(5e-3));
+    }
+}
+
+// Axes are projected onto every direction anew: where a component of it changes its sign, nothing may jump.
+TEST_CASE("a sensitive tint has no seam over a field of 60 degrees") {
+    ClassRegistry classes = registry();
+    SurfaceProbe plate(classes, "retarder", {{{"axis", 0.6}, {"thickness", 551 / 0.009}}}),
+        sheets(classes, "linear_polarizer", {{{"axis", 0.1}}, {{"axis", 0.1 + pi / 2}}});
+    // Greatest difference of neighbours among count x count directions, with and without some at 0.
+    const auto greatest_jump = [&](int count) {
+        std::vector<MuellerQuery> queries;
+        for (int i = 0; i < count * count; ++i) {
+            const auto place = [&](int k) { return std::tan(30 * degree) * (2.0 * k / (count - 1) - 1); };
+            const glm::vec3 to = glm::normalize(dvec3(place(i % count), place(i / count), -1));
+            queries.push_back({-to, to, event_transmit | event_delta | event_straight});
+        }
+        const auto p = plate.polarize(0, {}, queries), a = sheets.polarize(0, {}, queries),
+                   b = sheets.polarize(1, {}, queries);
+        double jump = 0;
+        for (int i = 0; i < count * count; ++i)
+            for (int lane = 0; lane < 3; ++lane) {
+                const auto part = [&](int k) { return passing_part(a[k], p[k], b[k], queries[k].to, lane); };
+                if (i % count > 0) jump = std::max(jump, std::fabs(part(i) - part(i - 1)));
+                if (i >= count) jump = std::max(jump, std::fabs(part(i) - part(i - count)));
+            }
+        return jump;
+    };
+    for (const int count : {15, 16}) {
+        const double coarse = greatest_jump(count), fine = greatest_jump(4 * (count - 1) + 1);
+        CAPTURE(coarse);
+        CHECK(coarse > 0.01);
+        CHECK(coarse < 0.2);
+        CHECK(fine < 0.3 * coarse);
     }
 }
 
