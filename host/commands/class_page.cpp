@@ -87,6 +87,8 @@ std::string type_name(const Parameter& p) {
                                                              {"GridRef", "file"},
                                                              {"EnvironmentMapRef", "file"},
                                                              {"MeasuredRef", "file"},
+                                                             {"MuellerMatrix", "16 numbers"},
+                                                             {"MuellerTableRef", "file"},
                                                              {"WorldPoint", "point"},
                                                              {"Direction", "direction"}};
     if (p.default_value.is_boolean()) return "true or false";  // a bool of GLSL is a uint in a buffer

@@ -57,14 +57,20 @@ std::vector<glm::dvec3> channel_colors(std::span<const double> wavelengths) {
     return colors;
 }
 
-// Where a wavelength stands on the list, as a fraction of the way from one to the next.
-SpectralTable places(std::span<const double> wavelengths) {
+}  // namespace
+
+SpectralTable channel_places(std::span<const double> wavelengths) {
     std::vector<double> numbers(wavelengths.size());
     for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = double(i);
     return interpolate(wavelengths, numbers, Outside::hold);
 }
 
-}  // namespace
+std::pair<size_t, size_t> visible_channels(std::span<const double> wavelengths) {
+    size_t begin = 0, end = wavelengths.size();
+    while (begin + 1 < end && wavelengths[begin + 1] <= first_nm) ++begin;
+    while (end > begin + 1 && wavelengths[end - 2] >= last_nm) --end;
+    return {begin, end};
+}
 
 void add_channels(MeasuredBsdf& bsdf, std::span<const float> values, std::span<const double> wavelengths) {
     if (wavelengths.empty()) {
@@ -79,15 +85,13 @@ void add_channels(MeasuredBsdf& bsdf, std::span<const float> values, std::span<c
         for (int k = 0; k < 3; ++k) bsdf.colors.push_back(float(std::max(rgb[k], 0.0)));
     }
     // Wavelengths that no path carries need no memory.
-    size_t begin = 0, end = channels;
-    while (begin + 1 < channels && wavelengths[begin + 1] <= first_nm) ++begin;
-    while (end > begin + 1 && wavelengths[end - 2] >= last_nm) --end;
+    const auto [begin, end] = visible_channels(wavelengths);
     bsdf.ref.channels = uint32_t(end - begin);
     bsdf.spectra.reserve(points * (end - begin));
     for (size_t p = 0; p < points; ++p)
         bsdf.spectra.insert(bsdf.spectra.end(), values.begin() + ptrdiff_t(p * channels + begin),
                             values.begin() + ptrdiff_t(p * channels + end));
-    bsdf.place.table = places(wavelengths.subspan(begin, end - begin));
+    bsdf.place.table = channel_places(wavelengths.subspan(begin, end - begin));
 }
 
 MeasuredRef append(MeasuredBsdf& all, const MeasuredBsdf& one) {

@@ -47,6 +47,9 @@ struct RecordResolver {
     };
     std::function<MeasuredRef(const std::filesystem::path& file)> measured =
         [](const std::filesystem::path&) { return MeasuredRef{}; };
+    // Index of the table of Mueller matrices in a file.
+    std::function<uint32_t(const std::filesystem::path& file)> mueller_table =
+        [](const std::filesystem::path&) { return 0u; };
     // The table of a record of the class mie, whose parameters are filled already.
     std::function<MieRef(const ClassInfo& info, const std::vector<std::byte>& record,
                          const std::string& where)>

@@ -35,6 +35,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     };
     resolver_.world_point = [this](const glm::dvec3& point) { return glm::vec3(point - out_.center); };
     resolver_.measured = [this](const std::filesystem::path& file) { return add_measured(file); };
+    resolver_.mueller_table = [this](const std::filesystem::path& file) { return add_mueller_table(file); };
     resolver_.mie = [this](const ClassInfo& info, const std::vector<std::byte>& record,
                            const std::string& where) { return add_mie(info, record, where); };
 }
@@ -81,6 +82,8 @@ void SceneCompiler::choose_polarization() {
     for (const Receiver& receiver : out_.receivers) polarizes |= receiver.wants_stokes;
     out_.features.polarization = options_.polarization == PolarizationMode::on ||
                                  (options_.polarization == PolarizationMode::automatic && polarizes);
+    if (out_.features.polarization && !mueller_tables_.empty())
+        share("MuellerRatios", memory_.mueller_tables.ratios);
 }
 
 // Classes are reflected at first use, which takes a compilation.

@@ -80,6 +80,7 @@ class SceneCompiler {
 
     glm::vec3 mean_image_color(uint32_t image);
     MeasuredRef add_measured(const std::filesystem::path& file);
+    uint32_t add_mueller_table(const std::filesystem::path& file);
     void upload_measured();
 
     // scene_geometry.cpp
@@ -123,6 +124,7 @@ class SceneCompiler {
     std::vector<DensityGridRecord> grids_;
     std::vector<glm::dmat4> grid_placements_;  // world_from_lattice
     bool uses_measured_ = false;
+    std::vector<MuellerTable> mueller_tables_;
     SpectralValue surrounding_;  // index of the medium whose phase function is being added
     std::vector<std::shared_ptr<const MieTable>> mie_tables_;
     std::vector<MaterialRecord> materials_;

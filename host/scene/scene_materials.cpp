@@ -103,10 +103,34 @@ MeasuredRef SceneCompiler::add_measured(const std::filesystem::path& file) {
     return ref;
 }
 
+uint32_t SceneCompiler::add_mueller_table(const std::filesystem::path& file) {
+    const std::filesystem::path path = file.is_absolute() ? file : in_.folder / file;
+    auto known = memory_.mueller_files.find(path);
+    if (known == memory_.mueller_files.end()) {
+        for (const char* name : {"MuellerNumbers", "MuellerIntensities", "MuellerRatios"})
+            memory_.buffers.erase(name);
+        known = memory_.mueller_files.emplace(path, read_mueller_file(path, threads_, memory_.mueller_tables))
+                    .first;
+    }
+    MuellerTable table = known->second.table;
+    for (size_t i = 0; i < mueller_tables_.size(); ++i)
+        if (mueller_tables_[i].matrices == table.matrices) return uint32_t(i);
+    table.place_rgb = known->second.place.rgb;
+    table.place_table = add_spectrum(known->second.place, SpectralKind::factor);
+    mueller_tables_.push_back(table);
+    return uint32_t(mueller_tables_.size() - 1);
+}
+
 void SceneCompiler::upload_measured() {
-    if (!uses_measured_) return;
-    share("MeasuredPoints", memory_.measured.points);
-    share("MeasuredColors", memory_.measured.colors);
+    if (uses_measured_) {
+        share("MeasuredPoints", memory_.measured.points);
+        share("MeasuredColors", memory_.measured.colors);
+    }
+    if (!mueller_tables_.empty()) {
+        upload("MuellerTables", mueller_tables_);
+        share("MuellerNumbers", memory_.mueller_tables.numbers);
+        share("MuellerIntensities", memory_.mueller_tables.intensities);
+    }
 }
 
 bool SceneCompiler::has_bodies() const {

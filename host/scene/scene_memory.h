@@ -11,6 +11,7 @@
 
 #include "host/gpu/buffer.h"
 #include "host/measured/measured_bsdf.h"
+#include "host/measured/mueller_table.h"
 #include "host/mie/mie_table.h"
 #include "host/scene/classes.h"
 #include "host/scene/density_bricks.h"
@@ -41,6 +42,8 @@ struct SceneMemory {
         SpectralValue place;
     };
     std::map<std::filesystem::path, MeasuredFile> measured_files;
+    MuellerTables mueller_tables;
+    std::map<std::filesystem::path, MuellerFile> mueller_files;
     std::vector<std::shared_ptr<const MieTable>> mie_tables;  // of the last compilation
 
     uint64_t world_key = 0;

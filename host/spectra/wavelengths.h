@@ -9,6 +9,10 @@
 
 namespace etendue {
 
+// nm, of R, G and B where a class needs a wavelength; twin of lane_wavelengths() in
+// shaders/features/spectrum.glsl.
+constexpr int dominant_nm[3] = {611, 549, 464};
+
 // Twin of struct Wavelengths in shaders/features/spectrum.glsl.
 struct Wavelengths {
     glm::vec4 nm;      // the first is the hero: the only one left behind dispersion

@@ -130,6 +130,29 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          [](Executable& p) {
              write_text(p.folder / "gold.bsdf", std::string("tensor_file\0\1\0\7\0\0\0\5\0ndf", 23));
          }},
+        {"a Mueller surface without matrix and file",
+         render,
+         2,
+         {"s.gltf", "/materials/0", "neither matrix nor file"},
+         small_scene(R"({"class": "mueller"})")},
+        {"a Mueller surface with a file that is turned",
+         render,
+         2,
+         {"s.gltf", "/materials/0", "file", "nothing else"},
+         small_scene(R"({"class": "mueller", "file": "gold.pbsdf", "axis": 1})")},
+        {"a Mueller surface whose file is missing",
+         render,
+         2,
+         {"gold.pbsdf"},
+         small_scene(R"({"class": "mueller", "file": "gold.pbsdf"})")},
+        {"a Mueller surface of a file without matrices",
+         render,
+         2,
+         {"gold.pbsdf", "phi_d", "missing"},
+         small_scene(R"({"class": "mueller", "file": "gold.pbsdf"})"),
+         [](Executable& p) {
+             write_text(p.folder / "gold.pbsdf", std::string("tensor_file\0\1\0\0\0\0\0", 18));
+         }},
         {"a number too large", render, 2, {"s.gltf"}, small_scene(R"({"class": "lambertian"})", "1e999")},
     });
 }

@@ -23,6 +23,7 @@ struct SurfaceConfiguration {
 
 std::vector<SurfaceConfiguration> extended_principled();  // principled_extensions_test.cpp
 std::vector<SurfaceConfiguration> measured_files();       // measured_test.cpp
+std::vector<SurfaceConfiguration> mueller_files();        // mueller_table_test.cpp
 
 inline std::vector<SurfaceConfiguration> surface_configurations(const std::string& name) {
     using C = SurfaceConfiguration;
@@ -171,9 +172,13 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
         const nlohmann::json circular = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
         const nlohmann::json diagonal = {0.4, 0.1, 0.2, 0, 0.05, 0.2,  0, 0.1,
                                          0.1, 0,   0.2, 0, 0,    0.05, 0, 0.2};
-        return {C{"some matrix", {{"matrix", diagonal}}, 1, 1, 0.4},
-                C{"right circular polarizer", {{"matrix", circular}}, 1, 1, 0.5},
-                C{"mirror of it", {{"matrix", circular}, {"axis", 0.4}, {"reflects", true}}, 1, 1, 0.5}};
+        std::vector<C> result = {
+            C{"some matrix", {{"matrix", diagonal}}, 1, 1, 0.4},
+            C{"right circular polarizer", {{"matrix", circular}}, 1, 1, 0.5},
+            C{"mirror of it", {{"matrix", circular}, {"axis", 0.4}, {"reflects", true}}, 1, 1, 0.5}};
+        const std::vector<C> tables = mueller_files();
+        result.insert(result.end(), tables.begin(), tables.end());
+        return result;
     }
     if (name == "color_filter") return {C{"red", {{"transmittance", {0.9, 0.2, 0.05}}}}};
     if (name == "measured") return measured_files();

@@ -82,7 +82,7 @@ struct ProbedScene {
     nlohmann::json scene;
 
     ProbedScene() : scene(nlohmann::json::parse(read_text(source_path("scenes/caustic_box.gltf")))) {
-        write_metal(folder.path);
+        write_metals(folder.path);
         std::filesystem::copy_file(source_path("scenes/cloud.nrrd"), folder / "cloud.nrrd");
         scene["scenes"][0]["nodes"].erase(7);
     }
@@ -111,7 +111,8 @@ template <class See>
 void for_each_class(See see) {
     const ClassRegistry registry(test_sources());
     for (const ClassInfo& info : registry.classes(Interface::surface))
-        see(surface_of(info.name), {{"class", "homogeneous"}, {"scattering", 1}});
+        for (const nlohmann::json& surface : surfaces_of(info.name))
+            see(surface, {{"class", "homogeneous"}, {"scattering", 1}});
     for (const ClassInfo& info : registry.classes(Interface::medium))
         see({{"class", "dielectric"}}, medium_of(info.name));
 }

@@ -1,19 +1,22 @@
 // Something of every registered class of surfaces and media, for what is asked of all of them.
 #pragma once
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/bsdf_files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace etendue {
 
-// What a scene says of a surface of the class, whose other parameters are by default.
-inline nlohmann::json surface_of(const std::string& name) {
+// What a scene says of surfaces of the class, whose other parameters are by default: one of each form that it
+// has.
+inline std::vector<nlohmann::json> surfaces_of(const std::string& name) {
     nlohmann::json surface = {{"class", name}};
     if (name == "measured") surface["file"] = "metal.bsdf";
     if (name == "color_filter") surface["transmittance"] = 0.5;
-    if (name == "mueller") surface["matrix"] = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
-    return surface;
+    if (name != "mueller") return {surface};
+    surface["matrix"] = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
+    const nlohmann::json table = {{"class", name}, {"file", "metal.pbsdf"}};
+    return {surface, table};
 }
 
 inline nlohmann::json medium_of(const std::string& name) {
@@ -22,11 +25,17 @@ inline nlohmann::json medium_of(const std::string& name) {
     return medium;
 }
 
-// The file that `measured` names.
-inline void write_metal(const std::filesystem::path& folder) {
+// The files that `measured` and `mueller` name.
+inline void write_metals(const std::filesystem::path& folder) {
     GgxMetal metal;
     metal.reflectance = [](double, size_t) { return 0.8; };
-    std::ofstream(folder / "metal.bsdf", std::ios::binary) << tensor_file_bytes(rgl_fields(metal, {}));
+    write_text(folder / "metal.bsdf", tensor_file_bytes(rgl_fields(metal, {})));
+    const PolarizedMetal gold{0.4, [](double nm) { return std::complex(0.2, -nm / 160); }};
+    const auto matrix = [&](double nm, const glm::dvec3& from, const glm::dvec3& to) {
+        return metal_matrix(gold, nm, from, to);
+    };
+    write_text(folder / "metal.pbsdf",
+               tensor_file_bytes(mueller_fields(even_nodes(25, 10, 19), {450, 500, 600}, matrix)));
 }
 
 }  // namespace etendue

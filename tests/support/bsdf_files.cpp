@@ -101,12 +101,68 @@ std::string tensor_file_bytes(const TensorFields& fields) {
     return out;
 }
 
-double conductor_reflectance(double cosine, double eta, double k) {
-    const std::complex<double> n(eta, -k);
+namespace {
+
+// Amplitudes of s and p, Verdet's signs.
+std::pair<std::complex<double>, std::complex<double>> conductor_amplitudes(double cosine,
+                                                                           const std::complex<double>& n) {
     const std::complex<double> inner = std::sqrt(n * n - (1 - cosine * cosine));
-    const auto s = (cosine - inner) / (cosine + inner),
-               p = (n * n * cosine - inner) / (n * n * cosine + inner);
+    return {(cosine - inner) / (cosine + inner), (n * n * cosine - inner) / (n * n * cosine + inner)};
+}
+
+}  // namespace
+
+double conductor_reflectance(double cosine, double eta, double k) {
+    const auto [s, p] = conductor_amplitudes(cosine, {eta, -k});
     return 0.5 * (std::norm(s) + std::norm(p));
+}
+
+std::array<double, 16> metal_matrix(const PolarizedMetal& metal, double nm, const glm::dvec3& from,
+                                    const glm::dvec3& to) {
+    const glm::dvec3 h = glm::normalize(from + to);
+    const GgxMetal ggx{metal.alpha, metal.alpha, {}};
+    const double f = ggx_density(ggx, h) / (4 * ggx_area(ggx, from) * ggx_area(ggx, to));
+    const auto [s, p] = conductor_amplitudes(glm::dot(from, h), metal.index(nm));
+    const double a = 0.5 * f * (std::norm(s) + std::norm(p)), b = 0.5 * f * (std::norm(s) - std::norm(p));
+    const std::complex<double> coherent = f * p * std::conj(s);  // its argument is the phase of p before s
+    const double c = coherent.real(), d = coherent.imag();
+    return {a, b, 0, 0, b, a, 0, 0, 0, 0, c, -d, 0, 0, d, c};
+}
+
+MuellerNodes even_nodes(size_t phi_d, size_t theta_d, size_t theta_h) {
+    return {even_angles(-pi, pi, phi_d), even_angles(0, pi / 2, theta_d), even_angles(0, pi / 2, theta_h)};
+}
+
+std::pair<glm::dvec3, glm::dvec3> half_difference(double phi_d, double theta_d, double theta_h) {
+    const glm::dvec3 h = spherical(theta_h, 0), down(h.z, 0, -h.x), across(0, 1, 0);
+    const glm::dvec3 middle = std::cos(theta_d) * h,
+                     apart = std::sin(theta_d) * (std::cos(phi_d) * down + std::sin(phi_d) * across);
+    return {middle + apart, middle - apart};
+}
+
+TensorFields mueller_fields(const MuellerNodes& nodes, const std::vector<uint16_t>& wavelengths,
+                            const MatrixOfDirections& matrix) {
+    std::vector<float> values;
+    for (const double phi_d : nodes.phi_d)
+        for (const double theta_d : nodes.theta_d)
+            for (const double theta_h : nodes.theta_h)
+                for (const uint16_t nm : wavelengths) {
+                    const auto [from, to] = half_difference(phi_d, theta_d, theta_h);
+                    const bool above = from.z > 1e-9 && to.z > 1e-9;
+                    const auto m = above ? matrix(nm, from, to) : std::array<double, 16>{std::nan("")};
+                    values.insert(values.end(), m.begin(), m.end());
+                }
+    const auto axis = [](const std::vector<double>& angles) {
+        return float_tensor({1, angles.size()}, std::vector<float>(angles.begin(), angles.end()));
+    };
+    TensorData nm{3, {wavelengths.size()}, std::vector<uint8_t>(2 * wavelengths.size())};
+    std::memcpy(nm.bytes.data(), wavelengths.data(), nm.bytes.size());
+    const uint64_t a = nodes.phi_d.size(), b = nodes.theta_d.size(), c = nodes.theta_h.size();
+    return {{"phi_d", axis(nodes.phi_d)},
+            {"theta_d", axis(nodes.theta_d)},
+            {"theta_h", axis(nodes.theta_h)},
+            {"wvls", nm},
+            {"M", float_tensor({a, b, c, wavelengths.size(), 4, 4}, values)}};
 }
 
 TensorFields rgl_fields(const GgxMetal& metal, const std::vector<double>& wavelengths,

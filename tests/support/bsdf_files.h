@@ -1,5 +1,7 @@
 // Files of measured surfaces, made from formulas.
 #pragma once
+#include <array>
+#include <complex>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -39,6 +41,27 @@ struct RglResolution {
 // channels.
 TensorFields rgl_fields(const GgxMetal& metal, const std::vector<double>& wavelengths,
                         const RglResolution& resolution = {});
+
+// Mueller matrices of a metal with the GGX distribution, whose facets reflect after Fresnel.
+struct PolarizedMetal {
+    double alpha = 0.4;
+    std::function<std::complex<double>(double nm)> index;  // n - ik
+};
+// 1/sr, rows first; x across the plane of both directions, which point away from the surface.
+std::array<double, 16> metal_matrix(const PolarizedMetal& metal, double nm, const glm::dvec3& from,
+                                    const glm::dvec3& to);
+
+struct MuellerNodes {  // rad; phi_d once around
+    std::vector<double> phi_d, theta_d, theta_h;
+};
+MuellerNodes even_nodes(size_t phi_d, size_t theta_d, size_t theta_h);
+// The directions that light comes from and goes to, of one point of such a table (Rusinkiewicz 1998).
+std::pair<glm::dvec3, glm::dvec3> half_difference(double phi_d, double theta_d, double theta_h);
+// Fields of a file of Baek et al. 2020; what is below the horizon is not a number, so not measured.
+using MatrixOfDirections =
+    std::function<std::array<double, 16>(double nm, const glm::dvec3& from, const glm::dvec3& to)>;
+TensorFields mueller_fields(const MuellerNodes& nodes, const std::vector<uint16_t>& wavelengths,
+                            const MatrixOfDirections& matrix);
 
 // A table of our own; angles in degrees, `value` is a number or an array.
 using TableValue = std::function<nlohmann::json(double theta_i, double theta_r, double phi)>;

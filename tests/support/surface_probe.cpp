@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "host/measured/mueller_table.h"
 #include "host/scene/features.h"
 #include "host/scene/records.h"
 #include "tests/support/source_path.h"
@@ -69,6 +70,14 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     resolver.measured = [&](const std::filesystem::path& file) {
         return append(measured, read_measured_bsdf(file));
     };
+    MuellerTables matrices;
+    std::vector<MuellerTable> tables;
+    resolver.mueller_table = [&](const std::filesystem::path& file) {
+        const MuellerFile read = read_mueller_file(file, 2, matrices);
+        tables.push_back(read.table);
+        tables.back().place_rgb = read.place.rgb;
+        return uint32_t(tables.size() - 1);
+    };
     RecordBuffer records;
     for (const nlohmann::json& p : parameters)
         records.add(*info, fill_record(*info, {class_name, p, "/surface"}, std::nullopt, resolver));
@@ -84,6 +93,10 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     records_ = create_buffer(device, records.bytes(), "surface records");
     measured_points_ = create_buffer(device, measured.points, "measured points");
     measured_colors_ = create_buffer(device, measured.colors, "measured colors");
+    mueller_tables_ = create_buffer(device, tables, "Mueller tables");
+    mueller_numbers_ = create_buffer(device, matrices.numbers, "Mueller numbers");
+    mueller_intensities_ = create_buffer(device, matrices.intensities, "Mueller intensities");
+    mueller_ratios_ = create_buffer(device, matrices.ratios, "Mueller ratios");
     samples_ = Buffer(device, max_count * sizeof(SurfaceSample), "surface samples");
     answers_ = Buffer(device, sizeof(glm::vec4), "surface answers");
     pairs_ = Buffer(device, max_count * sizeof(DirectionPair), "direction pairs");
@@ -100,7 +113,11 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
                       {"Queries", &queries_},
                       {"Muellers", &muellers_},
                       {"MeasuredPoints", &measured_points_},
-                      {"MeasuredColors", &measured_colors_}};
+                      {"MeasuredColors", &measured_colors_},
+                      {"MuellerTables", &mueller_tables_},
+                      {"MuellerNumbers", &mueller_numbers_},
+                      {"MuellerIntensities", &mueller_intensities_},
+                      {"MuellerRatios", &mueller_ratios_}};
     sample_ = probe_kernel(sources, "sample_surface.comp", table);
     evaluate_ = probe_kernel(sources, "evaluate_surface.comp", table);
     polarize_ = probe_kernel(sources, "polarize_surface.comp", table);
