@@ -6,6 +6,7 @@
 
 #include "host/error.h"
 #include "host/gltf/gltf.h"
+#include "host/scene/scene_files.h"
 
 namespace etendue {
 
@@ -28,6 +29,9 @@ OpenedScene open_scene(const SceneChoice& choice) {
     OpenedScene opened;
     opened.device = device.get();
     opened.scene = compile_scene(*opened.device, description, scene_options(choice));
+    opened.files = files_of(description);
+    opened.files.insert(opened.files.begin(), choice.scene);
+    if (!choice.environment.empty()) opened.files.push_back(choice.environment);
     const DeviceDescription& used = opened.device->description;
     if (used.max_loop_turns > 0)
         opened.scene.warnings.push_back(

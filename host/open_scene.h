@@ -11,6 +11,7 @@ namespace etendue {
 struct OpenedScene {
     std::unique_ptr<Device> device;
     Scene scene;
+    std::vector<std::filesystem::path> files;  // that it was read from, the scene file first
 };
 
 // Fails with one line for what is wrong in the scene or its files, and where there is no such device.

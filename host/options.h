@@ -32,9 +32,11 @@ struct SceneChoice {
 
 struct RenderOptions : SceneChoice {
     std::filesystem::path output;    // never empty; default_output(scene) where none was given
+    uint64_t first_pass = 0;         // of the run: others may make those before, and merge them
     std::optional<uint64_t> passes;  // exactly one of the three goals is set; 64 passes by default
     std::optional<double> seconds, error;
     Algorithm algorithm = Algorithm::automatic;
+    std::optional<double> forward_paths;  // a pixel and pass, where a named algorithm has any; else 1
     Schedule schedule = Schedule::automatic;
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths
     uint64_t seed = 0;
@@ -59,7 +61,19 @@ struct CompareOptions {
     std::optional<double> max_relmse;
 };
 
-struct InspectOptions : SceneChoice {};
+struct InspectOptions : SceneChoice {
+    bool json = false;  // only what auto chooses, for programs to read
+};
+
+struct MergeOptions {
+    std::vector<std::filesystem::path> parts;         // checkpoints of passes of one render
+    std::filesystem::path output, checkpoint, stats;  // empty = none; image or checkpoint is set
+    uint64_t first_pass = 0;
+    std::optional<uint64_t> passes;  // that they are to make up, from the first; else up to their last
+    bool partial = false;            // passes may be missing, and parts damaged
+    bool aovs = false, quiet = false;
+    std::string command_line;
+};
 
 struct BenchOptions : SceneChoice {             // `scene` is each of `scenes` in turn
     std::vector<std::filesystem::path> scenes;  // none: the page of `output` is drawn again

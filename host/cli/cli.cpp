@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "host/cli/merge.h"
 #include "host/cli/rays.h"
 #include "host/cli/shared.h"
 #include "host/cli/values.h"
@@ -22,7 +23,7 @@ const char* overview =
 
 // Arguments as text (host/cli/values.h).
 struct RenderArguments {
-    std::optional<std::string> passes, seconds, error;
+    std::optional<std::string> passes, seconds, error, forward_paths;
     SharedArguments shared;
 };
 
@@ -43,23 +44,30 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
         ->add_option("-o,--output", options.output,
                      "Image to write (default: the scene's name with .exr, here)")
         ->option_text("OUT.exr");
-    auto* passes =
-        render->add_option("--passes", arguments.passes, "Stop after N passes: paths a pixel (default: 64)");
+    auto* passes = render->add_option(
+        "--passes", arguments.passes,
+        "Stop after N passes: paths a pixel (default: 64); A:B makes passes A to B - 1 of a "
+        "run, for merge");
     auto* seconds =
         render->add_option("--time", arguments.seconds, "Stop after that many seconds of rendering");
     auto* error = render->add_option(
         "--error", arguments.error,
         "Stop when the relative error (root of the relMSE) is below E, with 95 % confidence");
-    passes->option_text("N")->excludes(seconds)->excludes(error);
+    passes->option_text("N|A:B")->excludes(seconds)->excludes(error);
     seconds->option_text("SEC")->excludes(error);
     error->option_text("E");
+    add_shared(*render, options, arguments.shared,
+               {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
+                {"receiver", "Camera to render (default: the scene's first)"},
+                {"environment", "Latitude-longitude image for the scene's surroundings"},
+                {"algorithm", "How light is traced (default: auto)"}});
+    render
+        ->add_option("--forward-paths", arguments.forward_paths,
+                     "Forward paths a pixel and pass, with a named algorithm that has them (default: 1)")
+        ->option_text("X");
     add_shared(
         *render, options, arguments.shared,
-        {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
-         {"receiver", "Camera to render (default: the scene's first)"},
-         {"environment", "Latitude-longitude image for the scene's surroundings"},
-         {"algorithm", "How light is traced (default: auto)"},
-         {"vertex-memory",
+        {{"vertex-memory",
           "Memory for vertices of forward paths; a pass that needs more is split (default: 256)"},
          {"color", "What a ray carries (default: auto)"},
          {"polarization", "Whether rays carry polarization (default: auto, where something polarizes)"},
@@ -85,17 +93,29 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
 
 void finish_render(RenderOptions& options, const RenderArguments& arguments, std::string command_line) {
     if (options.scene.empty()) fail_input("SCENE is empty (see etendue render --help)");
-    if (arguments.passes)
-        options.passes = parse_count(*arguments.passes, "--passes", 1, uint64_t(1) << 31);
-    else if (arguments.seconds)
+    PassCount passes{0, 64, false};
+    if (arguments.passes || !(arguments.seconds || arguments.error)) {
+        if (arguments.passes) passes = parse_passes(*arguments.passes);
+        options.first_pass = passes.first, options.passes = passes.count;
+    } else if (arguments.seconds)
         options.seconds = parse_positive(*arguments.seconds, "--time", ", in seconds");
     else if (arguments.error)
         options.error = parse_positive(*arguments.error, "--error", "");
-    else
-        options.passes = 64;
     finish_shared(options, arguments.shared);
     options.seed = parse_count(arguments.shared.seed, "--seed", 0, UINT32_MAX);
     options.algorithm = parse_algorithm(arguments.shared.algorithm, "--algorithm");
+    if (passes.is_range && options.algorithm == Algorithm::automatic && options.resume.empty())
+        fail_input(
+            "--passes {}: goes with a named --algorithm, since auto may choose another one elsewhere "
+            "(etendue "
+            "inspect --json says what it chooses)",
+            *arguments.passes);
+    if (arguments.forward_paths) {
+        options.forward_paths = parse_positive(*arguments.forward_paths, "--forward-paths", "");
+        if (options.algorithm == Algorithm::automatic || options.algorithm == Algorithm::backward)
+            fail_input("--forward-paths: goes with --algorithm forward or bidirectional, not with {}",
+                       algorithm_name(options.algorithm));
+    }
     options.vertex_bytes = parse_mebibytes(arguments.shared.vertex_memory, "--vertex-memory");
     options.schedule = parse_schedule(arguments.shared.schedule);
     if (options.spectral_bins > 0 && options.color == ColorMode::rgb)
@@ -177,14 +197,21 @@ void finish_bench(BenchOptions& options, const BenchArguments& arguments) {
     options.algorithms = parse_algorithms(arguments.algorithms, "--algorithms");
 }
 
-CLI::App* add_inspect(CLI::App& app, InspectOptions& options) {
+CLI::App* add_inspect(CLI::App& app, InspectOptions& options, SharedArguments& arguments) {
     CLI::App* inspect =
         app.add_subcommand("inspect", "Objects, classes, features, kernels and memory of a scene");
     inspect->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
-    SharedArguments none;
-    add_shared(
-        *inspect, options, none,
-        {{"receiver", "Camera (default: the scene's first)"}, {"environment"}, {"device"}, {"shaders"}});
+    add_shared(*inspect, options, arguments,
+               {{"size"},
+                {"receiver", "Camera (default: the scene's first)"},
+                {"environment"},
+                {"color"},
+                {"polarization"},
+                {"spectral-bins"},
+                {"device"},
+                {"shaders"}});
+    inspect->add_flag("--json", options.json,
+                      "Only what --algorithm auto chooses, with the words that make render do the same");
     return inspect;
 }
 
@@ -242,6 +269,9 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     RaysOptions rays_options;
     RaysArguments rays_arguments;
     InspectOptions inspect_options;
+    SharedArguments inspect_arguments;
+    MergeOptions merge_options;
+    std::optional<std::string> merge_passes;
     ClassesOptions classes_options;
     std::optional<std::string> classes_passes;
     CLI::App* render = add_render(app, render_options, render_arguments);
@@ -249,18 +279,20 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CLI::App* bench = add_bench(app, bench_options, bench_arguments);
     CLI::App* view = add_view(app, view_options, view_arguments);
     CLI::App* rays = add_rays(app, rays_options, rays_arguments);
-    CLI::App* inspect = add_inspect(app, inspect_options);
+    CLI::App* inspect = add_inspect(app, inspect_options, inspect_arguments);
+    CLI::App* merge = add_merge(app, merge_options, merge_passes);
     CLI::App* classes = add_classes(app, classes_options, classes_passes);
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
 
-    const auto commands = {render, view, rays, compare, bench, inspect, classes, devices};
+    const auto commands = {render, merge, view, rays, compare, bench, inspect, classes, devices};
     std::string first = argc < 2 ? "" : argv[1];
     bool known = first.starts_with("-");
     for (CLI::App* command : commands) known = known || first == command->get_name();
     if (!known)
         fail_input(
-            "{}; one of: render, view, rays, compare, bench, inspect, classes, devices (see etendue --help)",
+            "{}; one of: render, merge, view, rays, compare, bench, inspect, classes, devices (see etendue "
+            "--help)",
             argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
 
     CLI::App* chosen = &app;
@@ -284,6 +316,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         finish_render(render_options, render_arguments, quoted_command(argc, argv));
         return render_options;
     }
+    if (merge->parsed()) {
+        finish_merge(merge_options, merge_passes, quoted_command(argc, argv));
+        return merge_options;
+    }
     if (compare->parsed()) {
         if (max_relmse) compare_options.max_relmse = parse_positive(*max_relmse, "--max-relmse", "");
         return compare_options;
@@ -300,7 +336,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         finish_view(view_options, view_arguments);
         return view_options;
     }
-    if (inspect->parsed()) return inspect_options;
+    if (inspect->parsed()) {
+        finish_shared(inspect_options, inspect_arguments);
+        return inspect_options;
+    }
     if (classes->parsed()) {
         finish_classes(classes_options, classes_passes);
         return classes_options;

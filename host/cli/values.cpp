@@ -22,6 +22,16 @@ double parse_positive(const std::string& text, const char* option, const char* u
     return value;
 }
 
+PassCount parse_passes(const std::string& text) {
+    constexpr uint64_t most = uint64_t(1) << 31;
+    const size_t colon = text.find(':');
+    if (colon == std::string::npos) return {0, parse_count(text, "--passes", 1, most), false};
+    const uint64_t first = parse_count(text.substr(0, colon), "--passes, first", 0, most - 1),
+                   end = parse_count(text.substr(colon + 1), "--passes, end", 1, most);
+    if (first >= end) fail_input("--passes {}: A:B are passes A to B - 1, so B must be above A", text);
+    return {first, end - first, true};
+}
+
 ImageSize parse_size(const std::string& text) {
     size_t cross = text.find_first_of("xX");
     if (cross == std::string::npos)

@@ -7,6 +7,12 @@
 namespace etendue {
 
 uint64_t parse_count(const std::string& text, const char* option, uint64_t least, uint64_t most);
+// Of --passes: N, the first ones, or A:B, from A to B - 1.
+struct PassCount {
+    uint64_t first = 0, count = 0;
+    bool is_range = false;
+};
+PassCount parse_passes(const std::string& text);
 uint64_t parse_mebibytes(const std::string& text, const char* option);  // the bytes
 double parse_positive(const std::string& text, const char* option, const char* unit);
 ImageSize parse_size(const std::string& text);  // of --size

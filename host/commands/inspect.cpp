@@ -2,9 +2,34 @@
 #include <fmt/core.h>
 
 #include "host/open_scene.h"
+#include "host/render/automatic.h"
 #include "host/render/renderer.h"
 
 namespace etendue {
+namespace {
+
+RenderSettings render_settings(const Receiver& receiver, const InspectOptions& options) {
+    const ImageSize size = image_size(receiver, options);
+    RenderSettings settings;
+    settings.receiver = receiver.ref;
+    settings.width = size.width, settings.height = size.height;
+    return settings;
+}
+
+// What `auto` chooses, and the words by which every machine renders so.
+void print_choice(OpenedScene& opened, const Receiver& receiver, const InspectOptions& options) {
+    const AlgorithmChoice choice =
+        choose_algorithm(*opened.device, opened.scene, render_settings(receiver, options));
+    nlohmann::json json = to_json(choice);
+    json.erase("is_open");
+    std::vector<std::string> words = {"--algorithm", algorithm_name(choice.algorithm)};
+    if (choice.algorithm != Algorithm::backward)
+        words.insert(words.end(), {"--forward-paths", fmt::format("{}", choice.forward_paths)});
+    json["arguments"] = words;
+    fmt::print("{}\n", json.dump(2));
+}
+
+}  // namespace
 
 int inspect_command(const InspectOptions& options) {
     OpenedScene opened = open_scene(options);
@@ -13,6 +38,11 @@ int inspect_command(const InspectOptions& options) {
     const bool any = !scene.receivers.empty() || !options.receiver.empty();
     const Receiver* chosen = any ? &choose_receiver(scene, options) : nullptr;
     for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    if (options.json) {
+        if (!chosen) choose_receiver(scene, options);  // which fails with a line
+        print_choice(opened, *chosen, options);
+        return 0;
+    }
 
     fmt::print("scene      {}\n", options.scene.string());
     fmt::print(
@@ -64,11 +94,7 @@ int inspect_command(const InspectOptions& options) {
             "shadow rays end at the first surface");
 
     if (chosen) {
-        RenderSettings settings;
-        settings.receiver = chosen->ref;
-        settings.width = image_size(*chosen, options).width;
-        settings.height = image_size(*chosen, options).height;
-        const Renderer renderer(*opened.device, scene, settings);
+        const Renderer renderer(*opened.device, scene, render_settings(*chosen, options));
         const AlgorithmChoice& choice = renderer.choice();
         fmt::print("algorithm  {}, {} schedule: {}\n", algorithm_name(choice.algorithm),
                    schedule_name(renderer.schedule()), choice.reason);

@@ -5,15 +5,14 @@
 #include <thread>
 
 #include "host/commands/choose_meanwhile.h"
+#include "host/commands/film_checkpoint.h"
 #include "host/commands/stats.h"
 #include "host/error.h"
 #include "host/image/atomic_file.h"
-#include "host/image/checkpoint.h"
 #include "host/image/exr.h"
 #include "host/image/image.h"
 #include "host/image/polarization.h"
 #include "host/interrupt.h"
-#include "host/open_scene.h"
 #include "host/progress.h"
 #include "host/render/renderer.h"
 
@@ -29,56 +28,64 @@ constexpr double batch_seconds = 0.25;     // of work between two looks at clock
 constexpr double checkpoint_seconds = 30;  // between two checkpoints
 constexpr uint32_t aov_samples = 16;       // primary rays a pixel for --aovs
 
-// Of everything that the device holds of the scene and of what it compiles, whichever files that came from.
-uint64_t scene_hash(const Scene& scene) {
-    uint64_t hash = hash_bytes({});
-    for (const auto& [name, buffer] : scene.buffers)
-        hash = hash_bytes(buffer.read_array<std::byte>(buffer.bytes()), hash);
-    for (const auto& [name, buffer] : scene.shared_buffers)
-        hash = hash_bytes(buffer->read_array<std::byte>(buffer->bytes()), hash);
-    for (const SpectralTable& spectrum : scene.spectra)
-        hash = hash_bytes(std::as_bytes(std::span(spectrum.values)), hash);
-    for (const auto& [name, text] : scene.sources.generated)
-        hash = hash_bytes(std::as_bytes(std::span(text)), hash);
-    return hash;
-}
+// Checkpoints of one run: what its passes belong to, and those that it went on from.
+class Checkpoints {
+  public:
+    Checkpoints(const RenderOptions& options, const OpenedScene& opened, const Receiver& receiver)
+        : options_(options), opened_(opened), receiver_(receiver) {
+        if (options.checkpoint.empty() && options.resume.empty()) return;
+        sources_ = source_hashes(opened, options);
+        if (!options.resume.empty()) resumed_ = read_checkpoint(options.resume);
+    }
+    // That the earlier passes were made by, where it was settled and none is asked for.
+    std::optional<AlgorithmChoice> choice() const {
+        std::optional<AlgorithmChoice> choice;
+        if (resumed_ && options_.algorithm == Algorithm::automatic)
+            choice = choice_from_json(resumed_->about.at("choice"));
+        if (choice && choice->is_open) choice.reset();  // the pilot had not told when it was written
+        return choice;
+    }
+    // A line for the user; may be empty.
+    std::string restore(Renderer& renderer) {
+        if (!resumed_) return "";
+        require_identity(options_.resume, resumed_->identity, identity(renderer), "now");
+        etendue::restore(*resumed_, options_.resume, renderer);
+        about_ = resumed_->about;
+        resumed_.reset();
+        const nlohmann::json here = {device_text(*opened_.device)};
+        return about_.at("devices") == here
+                   ? ""
+                   : fmt::format("{}: passes of {}: what devices make agrees within rounding",
+                                 options_.resume.string(), about_.at("devices").dump());
+    }
+    void drop_earlier() { about_ = nlohmann::json::object(); }
+    // `seen`: an image with the layers of what pixels see; null = none.
+    void save(const Renderer& renderer, const Image* seen = nullptr) const {
+        if (options_.checkpoint.empty()) return;
+        Checkpoint checkpoint = to_checkpoint(identity(renderer), renderer, *opened_.device, about_);
+        if (seen) keep_seen(checkpoint, *seen);
+        write_checkpoint(options_.checkpoint, checkpoint);
+    }
 
-// What a checkpoint must agree on to be gone on from.
-nlohmann::json checkpoint_identity(const RenderOptions& options, const Scene& scene, const ImageSize& size,
-                                   const Receiver& receiver, const Device& device) {
-    return {{"version", ETENDUE_VERSION},
-            {"scene", fmt::format("{:016x}", scene_hash(scene))},
-            {"size", fmt::format("{}x{}", size.width, size.height)},
-            {"receiver", receiver.name},
-            {"seed", options.seed},
-            {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
-            {"algorithm", algorithm_name(options.algorithm)},
-            {"color", scene.features.spectral ? "spectral" : "rgb"},
-            {"spectral-bins", options.spectral_bins},
-            {"polarization", scene.features.polarization},
-            {"device", device.description.name + " " + device.description.driver}};
-}
+  private:
+    nlohmann::json identity(const Renderer& renderer) const {
+        return render_identity(sources_, options_, opened_.scene, receiver_, renderer);
+    }
+    const RenderOptions& options_;
+    const OpenedScene& opened_;
+    const Receiver& receiver_;
+    nlohmann::json sources_, about_ = nlohmann::json::object();
+    std::optional<Checkpoint> resumed_;
+};
 
-void save_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity,
-                     const Renderer& renderer) {
-    FilmState film = renderer.state();
-    Checkpoint checkpoint;
-    checkpoint.identity = identity;
-    checkpoint.passes = film.passes;
-    checkpoint.counters = to_json(film.counters);
-    checkpoint.counters["choice"] = to_json(renderer.choice());
-    checkpoint.arrays.push_back({"film", std::move(film.pixels)});
-    if (!film.bins.empty()) checkpoint.arrays.push_back({"bins", std::move(film.bins)});
-    write_checkpoint(path, checkpoint);
-}
-
-void restore(const Checkpoint& checkpoint, const std::filesystem::path& path, Renderer& renderer) {
-    FilmState film = renderer.state();
-    film.pixels = checkpoint_array(checkpoint, path, "film", film.pixels.size());
-    if (!film.bins.empty()) film.bins = checkpoint_array(checkpoint, path, "bins", film.bins.size());
-    film.passes = checkpoint.passes;
-    film.counters = counters_from_json(checkpoint.counters);
-    renderer.restore(film);
+// Passes that were asked for and are not there.
+uint64_t passes_left(const RenderOptions& options, const Renderer& renderer) {
+    uint64_t left = 0;
+    if (options.passes)
+        for (const PassRange& range :
+             renderer.pass_set().missing(options.first_pass, options.first_pass + *options.passes))
+            left += range.count();
+    return left;
 }
 
 }  // namespace
@@ -110,42 +117,41 @@ int render_command(const RenderOptions& given) {
     settings.width = options.size->width, settings.height = options.size->height;
     settings.receiver = receiver.ref;
     settings.algorithm = options.algorithm;
+    settings.forward_paths = options.forward_paths.value_or(settings.forward_paths);
     settings.schedule = options.schedule;
     settings.vertex_bytes = options.vertex_bytes;
     settings.spectral_bins = options.spectral_bins;
     settings.stokes = receiver.wants_stokes;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
-    nlohmann::json identity;
-    if (!options.checkpoint.empty() || !options.resume.empty())
-        identity = checkpoint_identity(options, scene, *options.size, receiver, device);
-    std::optional<Checkpoint> resumed;
-    if (!options.resume.empty()) {
-        resumed = read_checkpoint(options.resume, identity);
-        const AlgorithmChoice choice = choice_from_json(resumed->counters.at("choice"));
-        if (!choice.is_open) settings.choice = choice;  // else the pilot had not told when it was written
-    }
+    Checkpoints checkpoints(options, opened, receiver);
+    settings.choice = checkpoints.choice();
     ChooseMeanwhile chooses(device, scene, options, settings, receiver);
     std::unique_ptr<Renderer> renderer = chooses.make_renderer();
-    if (resumed) restore(*resumed, options.resume, *renderer);
+    renderer->begin_at(options.first_pass);
+    if (const std::string note = checkpoints.restore(*renderer); !note.empty()) show_note(progress, note);
     if (const std::string& note = chooses.note(); !note.empty()) show_note(progress, note);
     const double setup_seconds = seconds_since(start);
 
     RenderStatus status;
-    status.passes_goal = options.passes, status.seconds_goal = options.seconds,
-    status.error_goal = options.error;
+    status.seconds_goal = options.seconds, status.error_goal = options.error;
+    if (options.passes) status.passes_goal = renderer->passes() + passes_left(options, *renderer);
     status.passes_before = renderer->passes();
     uint64_t rays_before = all_rays(renderer->counters());
     auto render_start = Clock::now();
     double next_checkpoint = checkpoint_seconds;
     ErrorGoal error_goal{options.error.value_or(0)};
     bool accurate = false;
-    bool done = options.passes && renderer->passes() >= *options.passes;
+    const auto has_all = [&] { return options.passes && passes_left(options, *renderer) == 0; };
+    bool done = has_all();
     while ((!done || chooses.is_open()) && !interrupted()) {
         if (chooses.has_chosen()) {  // the two ways are not mixed: backward rays alone may have missed light
             if (chooses.take()) {
                 renderer.reset();  // two may not fit
                 renderer = chooses.make_renderer();
+                renderer->begin_at(options.first_pass);
+                checkpoints.drop_earlier();
                 status.passes_before = rays_before = 0;
+                status.passes_goal = options.passes;
                 render_start = Clock::now();
                 next_checkpoint = checkpoint_seconds;
                 error_goal = ErrorGoal{options.error.value_or(0)};
@@ -171,7 +177,7 @@ int render_command(const RenderOptions& given) {
         double batch = batch_seconds;
         if (options.seconds) batch = std::min(batch, *options.seconds - status.seconds);
         uint32_t count = renderer->passes_in(batch);
-        if (options.passes) count = uint32_t(std::min<uint64_t>(count, *options.passes - renderer->passes()));
+        if (options.passes) count = uint32_t(std::min<uint64_t>(count, passes_left(options, *renderer)));
         renderer->render_passes(count);
         status.passes = renderer->passes();
         status.seconds = seconds_since(render_start);
@@ -181,21 +187,21 @@ int render_command(const RenderOptions& given) {
             status.error = error.value();
             accurate = error_goal.look(renderer->passes(), error);
         }
-        done = (options.passes && renderer->passes() >= *options.passes) ||
-               (options.seconds && status.seconds >= *options.seconds) || accurate;
-        if (!options.checkpoint.empty() && !chooses.is_open() && status.seconds >= next_checkpoint) {
-            save_checkpoint(options.checkpoint, identity, *renderer);
+        done = has_all() || (options.seconds && status.seconds >= *options.seconds) || accurate;
+        if (!chooses.is_open() && status.seconds >= next_checkpoint) {
+            checkpoints.save(*renderer);
             next_checkpoint = seconds_since(render_start) + checkpoint_seconds;
         }
         show_progress(progress, status);
     }
     finish_progress(progress, status);
-    if (!options.checkpoint.empty()) save_checkpoint(options.checkpoint, identity, *renderer);
 
     Image image = renderer->develop(options.aovs);
     const RelativeError error = renderer->relative_error();
     const std::string& unit = receiver.info->pixel_unit;  // empty: of a camera, which sees things
-    if (options.aovs && unit.empty()) renderer->add_aovs(image, aov_samples);
+    const bool sees_things = options.aovs && unit.empty();
+    if (sees_things) renderer->add_aovs(image, aov_samples);
+    checkpoints.save(*renderer, sees_things ? &image : nullptr);
     image.attributes["pixelUnit"] = unit.empty() ? std::string("cd/m²") : unit;
     if (options.aovs && has_stokes(image)) add_polarization(image);
     renderer->add_spectra(image);

@@ -95,19 +95,24 @@ void check_writable(const fs::path& path) {
 }
 
 void write_atomically(const fs::path& path, std::span<const std::byte> bytes) {
+    write_atomically(path, std::vector{bytes});
+}
+
+void write_atomically(const fs::path& path, const std::vector<std::span<const std::byte>>& pieces) {
     fs::path target = destination(path);
     struct stat status = status_of(target, path);
     if (S_ISDIR(status.st_mode)) fail_input("{}: cannot be written: it is a folder", path.string());
     if (is_special(status)) {
         TemporaryFile device{.path = {}, .descriptor = open(target.c_str(), O_WRONLY | O_CLOEXEC)};
         if (device.descriptor < 0) fail_writing(path, errno);
-        return write_all(device.descriptor, bytes, path);
+        for (const auto& piece : pieces) write_all(device.descriptor, piece, path);
+        return;
     }
     TemporaryFile file;
     open_beside(file, target, path);
     if (status.st_mode != 0 && fchmod(file.descriptor, status.st_mode & 07777) != 0)
         fail_writing(path, errno);
-    write_all(file.descriptor, bytes, path);
+    for (const auto& piece : pieces) write_all(file.descriptor, piece, path);
     // Some file systems report a full disk only here.
     if (fsync(file.descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) fail_writing(path, errno);
     if (close(std::exchange(file.descriptor, -1)) != 0) fail_writing(path, errno);

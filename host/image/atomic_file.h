@@ -14,6 +14,9 @@ void check_writable(const std::filesystem::path& path);
 
 // Where `path` is no regular file (a pipe, a terminal) it is written to directly.
 void write_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
+// One behind the other.
+void write_atomically(const std::filesystem::path& path,
+                      const std::vector<std::span<const std::byte>>& pieces);
 
 // The whole file; fails with one line where it cannot be read.
 std::vector<std::byte> read_whole_file(const std::filesystem::path& path);

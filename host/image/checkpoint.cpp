@@ -1,6 +1,8 @@
 #include "host/image/checkpoint.h"
 
+#include <cerrno>
 #include <cstring>
+#include <fstream>
 
 #include "host/error.h"
 #include "host/image/atomic_file.h"
@@ -9,7 +11,7 @@ namespace etendue {
 namespace {
 
 const char magic[8] = {'E', 'T', 'D', 'F', 'I', 'L', 'M', '\0'};
-const uint32_t format_version = 1;
+const uint32_t format_version = 2;
 const size_t prefix_size = sizeof magic + 2 * sizeof(uint32_t);
 
 template <class T>
@@ -18,24 +20,37 @@ void append(std::vector<std::byte>& bytes, const T& value) {
     bytes.insert(bytes.end(), first, first + sizeof value);
 }
 
+// The file from its beginning to its end, hashed on the way: checkpoints may be large, and are held once.
+class Reader {
+  public:
+    explicit Reader(const std::filesystem::path& path)
+        : name_(path.string()), stream_(path, std::ios::binary) {
+        std::error_code unknown;
+        if (std::filesystem::is_directory(path, unknown)) errno = EISDIR;
+        if (!stream_ || errno == EISDIR) fail_input("{}: cannot be read: {}", name_, std::strerror(errno));
+        left_ = std::filesystem::file_size(path, unknown);
+    }
+    uint64_t left() const { return left_; }  // bytes
+    std::vector<std::byte> take(uint64_t size) {
+        if (size > left_) fail_input("{}: damaged: the checkpoint is cut short", name_);
+        std::vector<std::byte> bytes(size);
+        if (!stream_.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size)))
+            fail_input("{}: cannot be read: {}", name_, std::strerror(errno));
+        left_ -= size;
+        return bytes;
+    }
+
+  private:
+    std::string name_;
+    std::ifstream stream_;
+    uint64_t left_ = 0;
+};
+
 template <class T>
 T read_at(const std::vector<std::byte>& bytes, size_t offset) {
     T value;
     std::memcpy(&value, bytes.data() + offset, sizeof value);
     return value;
-}
-
-void require_identity(const std::string& name, const nlohmann::json& found, const nlohmann::json& wanted) {
-    for (const auto& [key, value] : wanted.items()) {
-        if (found.contains(key) && found[key] == value) continue;
-        std::string was = found.contains(key) ? found[key].dump() : "none";
-        fail_input("{}: this checkpoint is of another render: its {} is {}, now {}", name, key, was,
-                   value.dump());
-    }
-    for (const auto& [key, value] : found.items())
-        if (!wanted.contains(key))
-            fail_input("{}: this checkpoint is of another render: its {} is {}, now none", name, key,
-                       value.dump());
 }
 
 }  // namespace
@@ -58,71 +73,80 @@ uint64_t hash_bytes(std::span<const std::byte> bytes, uint64_t start) {
 
 void write_checkpoint(const std::filesystem::path& path, const Checkpoint& checkpoint) {
     nlohmann::json header = {{"identity", checkpoint.identity},
-                             {"passes", checkpoint.passes},
-                             {"counters", checkpoint.counters},
+                             {"passes", to_json(checkpoint.passes)},
+                             {"about", checkpoint.about},
                              {"arrays", nlohmann::json::array()}};
-    size_t size = 0;
-    for (const CheckpointArray& array : checkpoint.arrays) {
-        header["arrays"].push_back({{"name", array.name}, {"bytes", array.bytes.size()}});
-        size += array.bytes.size();
-    }
-    std::string text = header.dump();
-    std::vector<std::byte> bytes;
-    bytes.reserve(prefix_size + text.size() + size + sizeof(uint64_t));
-    append(bytes, magic);
-    append(bytes, format_version);
-    append(bytes, uint32_t(text.size()));
-    auto* first = reinterpret_cast<const std::byte*>(text.data());
-    bytes.insert(bytes.end(), first, first + text.size());
     for (const CheckpointArray& array : checkpoint.arrays)
-        bytes.insert(bytes.end(), array.bytes.begin(), array.bytes.end());
-    append(bytes, hash_bytes(bytes));
-    write_atomically(path, bytes);
+        header["arrays"].push_back({{"name", array.name}, {"bytes", array.bytes.size()}});
+    const std::string text = header.dump();
+    std::vector<std::byte> head, tail;
+    append(head, magic);
+    append(head, format_version);
+    append(head, uint32_t(text.size()));
+    auto* first = reinterpret_cast<const std::byte*>(text.data());
+    head.insert(head.end(), first, first + text.size());
+    uint64_t hash = hash_bytes(head);
+    std::vector<std::span<const std::byte>> pieces = {head};
+    for (const CheckpointArray& array : checkpoint.arrays) {
+        hash = hash_bytes(array.bytes, hash);
+        pieces.push_back(array.bytes);
+    }
+    append(tail, hash);
+    pieces.push_back(tail);
+    write_atomically(path, pieces);
 }
 
-Checkpoint read_checkpoint(const std::filesystem::path& path, const nlohmann::json& identity) {
-    std::string name = path.string();
-    std::vector<std::byte> bytes = read_whole_file(path);
-    if (bytes.size() < sizeof magic || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
+Checkpoint read_checkpoint(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    Reader reader(path);
+    std::vector<std::byte> head = reader.take(std::min<uint64_t>(prefix_size, reader.left()));
+    if (head.size() < sizeof magic || std::memcmp(head.data(), magic, sizeof magic) != 0)
         fail_input("{}: not a checkpoint of étendue", name);
-    if (bytes.size() < prefix_size + sizeof(uint64_t))
-        fail_input("{}: damaged: the checkpoint is cut short", name);
-    uint32_t version = read_at<uint32_t>(bytes, sizeof magic);
+    if (head.size() < prefix_size) fail_input("{}: damaged: the checkpoint is cut short", name);
+    const uint32_t version = read_at<uint32_t>(head, sizeof magic);
     if (version != format_version)
         fail_input("{}: checkpoint format {}, only {} can be read", name, version, format_version);
-    size_t body = bytes.size() - sizeof(uint64_t);
-    if (hash_bytes(std::span(bytes).first(body)) != read_at<uint64_t>(bytes, body))
-        fail_input("{}: damaged: the checkpoint is cut short or altered", name);
+    const std::vector<std::byte> text = reader.take(read_at<uint32_t>(head, sizeof magic + sizeof version));
+    head.insert(head.end(), text.begin(), text.end());
+    uint64_t hash = hash_bytes(head);
 
     Checkpoint checkpoint;
     try {
-        size_t offset = prefix_size + read_at<uint32_t>(bytes, sizeof magic + sizeof(uint32_t));
-        if (offset > body) fail_input("{}: damaged: the header is longer than the file", name);
-        auto* text = reinterpret_cast<const char*>(bytes.data());
-        nlohmann::json header = nlohmann::json::parse(text + prefix_size, text + offset);
+        const auto* first = reinterpret_cast<const char*>(text.data());
+        const nlohmann::json header = nlohmann::json::parse(first, first + text.size());
         checkpoint.identity = header.at("identity");
-        checkpoint.passes = header.at("passes").get<uint64_t>();
-        checkpoint.counters = header.at("counters");
+        checkpoint.passes = passes_from_json(header.at("passes"));
+        checkpoint.about = header.at("about");
         for (const nlohmann::json& entry : header.at("arrays")) {
-            size_t size = entry.at("bytes").get<size_t>();
-            if (size > body - offset) fail_input("{}: damaged: an array is longer than the file", name);
-            auto first = bytes.begin() + ptrdiff_t(offset);
-            checkpoint.arrays.push_back(
-                {entry.at("name").get<std::string>(), {first, first + ptrdiff_t(size)}});
-            offset += size;
+            const auto& array = checkpoint.arrays.emplace_back(
+                CheckpointArray{entry.at("name"), reader.take(entry.at("bytes").get<uint64_t>())});
+            hash = hash_bytes(array.bytes, hash);
         }
-        if (offset != body) fail_input("{}: damaged: bytes are left behind the last array", name);
     } catch (const nlohmann::json::exception&) {
         fail_input("{}: damaged: the header cannot be read", name);
     }
-    require_identity(name, checkpoint.identity, identity);
+    if (reader.left() != sizeof hash || read_at<uint64_t>(reader.take(sizeof hash), 0) != hash)
+        fail_input("{}: damaged: the checkpoint is cut short or altered", name);
     return checkpoint;
 }
 
-const std::vector<std::byte>& checkpoint_array(const Checkpoint& checkpoint,
-                                               const std::filesystem::path& path, const std::string& name,
-                                               size_t bytes) {
-    for (const CheckpointArray& array : checkpoint.arrays)
+void require_identity(const std::filesystem::path& path, const nlohmann::json& found,
+                      const nlohmann::json& wanted, const std::string& elsewhere) {
+    nlohmann::json keys = wanted;
+    keys.update(found);
+    for (const auto& [key, any] : keys.items()) {
+        const auto text = [&key = key](const nlohmann::json& identity) {
+            return identity.contains(key) ? identity[key].dump() : "none";
+        };
+        if (text(found) != text(wanted))
+            fail_input("{}: this checkpoint is of another render: its {} is {}, {} {}", path.string(), key,
+                       text(found), elsewhere, text(wanted));
+    }
+}
+
+std::vector<std::byte>& checkpoint_array(Checkpoint& checkpoint, const std::filesystem::path& path,
+                                         const std::string& name, size_t bytes) {
+    for (CheckpointArray& array : checkpoint.arrays)
         if (array.name == name && array.bytes.size() == bytes) return array.bytes;
     fail_input("{}: the checkpoint has no array '{}' of {} bytes", path.string(), name, bytes);
 }

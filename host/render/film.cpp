@@ -4,63 +4,124 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace etendue {
 
-Film::Film(Device& device, uint32_t width, uint32_t height, bool merging, bool stokes)
-    : width_(width),
-      height_(height),
-      layers_(stokes ? 4 : 1),
-      merging_(merging),
-      pixels_(device, bytes(), "Film") {}
+namespace {
 
-uint64_t Film::bytes() const {
-    return uint64_t(width_) * height_ * layers_ * (sizeof(FilmPixel) + (merging_ ? sizeof(FilmBias) : 0));
-}
+// Of samples beside the film, so that its sums are read and written seldom; passes at most as MOST_ADDENDS of
+// shaders/lib/exact_sum.glsl allows.
+constexpr uint64_t most_samples = 1 << 21, least_passes = 4, most_passes = 256;
 
-BufferTable Film::buffers() const { return {{"Film", &pixels_}}; }
-
-void Film::resize(uint32_t width, uint32_t height) { width_ = width, height_ = height; }
-
-void Film::clear() { pixels_.fill(0, bytes()); }
-
-std::vector<std::byte> Film::read() const { return pixels_.read_array<std::byte>(bytes()); }
-
-void Film::write(const std::vector<std::byte>& pixels) { pixels_.write(pixels.data(), pixels.size()); }
-
-FilmSums Film::sums(uint32_t layer) const {
-    FilmSums sums{width_, height_, {}, {}};
-    const std::vector<std::byte> bytes = read();
-    const size_t stride = sizeof(FilmPixel) + (merging_ ? sizeof(FilmBias) : 0);
-    for (size_t at = layer * stride; at < bytes.size(); at += layers_ * stride) {
-        std::memcpy(&sums.pixels.emplace_back(), &bytes[at], sizeof(FilmPixel));
-        if (merging_)
-            std::memcpy(&sums.bias.emplace_back(), &bytes[at + sizeof(FilmPixel)], sizeof(FilmBias));
+// Of one layer of every pixel.
+FilmSums layer_sums(const FilmShape& shape, std::span<const ExactSum> sums, const PassSet& passes,
+                    uint32_t layer) {
+    const size_t stride = shape.sums_a_layer(), pixels = size_t(shape.width) * shape.height;
+    FilmSums film{shape.width, shape.height, passes.even(), passes.count() - passes.even(), {}, {}};
+    film.pixels.resize(pixels);
+    if (shape.merging) film.bias.resize(pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+        const ExactSum* at = &sums[(i * shape.layers() + layer) * stride];
+        for (size_t half = 0; half < 2; ++half, at += stride / 2) {
+            film.pixels[i].sums[half] = value(at[0]);
+            film.pixels[i].squares[half] = value(at[1]);
+            if (shape.merging) film.bias[i].sums[half] = value(at[2]);
+        }
     }
-    return sums;
+    return film;
 }
 
-Image Film::develop(bool errors) const {
+}  // namespace
+
+Film::Film(Device& device, Scene& scene, const FilmShape& shape, KernelTimings& timings)
+    : ends_loops_early_(device.description.max_loop_turns > 0),
+      shape_(shape),
+      timings_(timings),
+      commands_(device),
+      sums_(device, shape.sums() * sizeof(ExactSum), "Film") {
+    const std::string defines =
+        fmt::format("#define MERGE_VERTICES {:d}\n#define STOKES_IMAGE {:d}\n", shape.merging, shape.stokes);
+    const uint64_t pixels = uint64_t(shape.width) * shape.height;
+    sample_passes_ = uint32_t(std::clamp<uint64_t>(most_samples / pixels, least_passes, most_passes));
+    samples_ =
+        Buffer(device, pixels * shape.layers() * sample_passes_ * (shape.merging ? 2 : 1) * sizeof(glm::vec3),
+               "Samples");
+    accumulate_film_ = make_color_kernel(device, scene, "kernels/accumulate_film.comp", buffers(), defines);
+}
+
+BufferTable Film::buffers() const { return {{"Film", &sums_}, {"Samples", &samples_}}; }
+
+uint32_t Film::begin_passes(uint64_t first, uint32_t wanted) {
+    if (not_added_.end != first || not_added_.count() == sample_passes_ || ends_loops_early_) add_samples();
+    if (ends_loops_early_) samples_.fill(0);
+    if (not_added_.count() == 0) not_added_ = {first, first};
+    const uint32_t count = std::min(wanted, sample_passes_ - uint32_t(not_added_.count()));
+    not_added_.end += count;
+    return count;
+}
+
+void Film::add_samples() {
+    if (not_added_.count() == 0) return;
+    const uint32_t pixels = shape_.width * shape_.height, size = accumulate_film_.group_size();
+    commands_.dispatch(accumulate_film_,
+                       std::clamp((pixels * shape_.layers() + size - 1) / size, 1u, max_groups),
+                       {{"pixels", pixels},
+                        {"sample_passes", sample_passes_},
+                        {"first_pass", uint32_t(not_added_.first)},
+                        {"passes", uint32_t(not_added_.count())}});
+    commands_.run(&timings_);
+    not_added_ = {};
+}
+
+void Film::warm_up() {
+    commands_.dispatch(accumulate_film_, 1);
+    commands_.run();
+}
+
+void Film::resize(uint32_t width, uint32_t height) {
+    not_added_ = {};
+    shape_.width = width, shape_.height = height;
+}
+
+void Film::clear() {
+    not_added_ = {};
+    sums_.fill(0, shape_.sums() * sizeof(ExactSum));
+}
+
+std::vector<ExactSum> Film::read() {
+    add_samples();
+    return sums_.read_array<ExactSum>(shape_.sums());
+}
+
+void Film::write(const std::vector<ExactSum>& sums) {
+    not_added_ = {};
+    sums_.write(sums.data(), sums.size() * sizeof(ExactSum));
+}
+
+Image develop_film(const FilmShape& shape, std::span<const ExactSum> sums, const PassSet& passes,
+                   bool errors) {
     Image image;
-    image.width = width_, image.height = height_;
+    image.width = shape.width, image.height = shape.height;
     const auto add = [&](const std::string& name, const std::vector<glm::vec3>& colors) {
         add_channels(image, {name + "R", name + "G", name + "B"},
                      std::span<const float>(&colors[0].x, 3 * colors.size()), 3);
     };
-    for (uint32_t layer = 0; layer < layers_; ++layer) {
-        const FilmSums film = sums(layer);
+    for (uint32_t layer = 0; layer < shape.layers(); ++layer) {
+        const FilmSums film = layer_sums(shape, sums, passes, layer);
         const std::string name = layer == 0 ? "" : fmt::format("S{}.", layer);
         std::vector<glm::vec3> means;
         means.reserve(film.pixels.size());
-        for (const FilmPixel& p : film.pixels) means.push_back(mean(p));
+        for (const FilmPixel& p : film.pixels) means.push_back(mean(film, p));
         add(name, means);
         if (errors) add("error." + name, estimate_errors(film));
     }
     return image;
 }
 
-RelativeError Film::relative_error() const { return estimate_relative_error(sums(0)); }
+RelativeError film_relative_error(const FilmShape& shape, std::span<const ExactSum> sums,
+                                  const PassSet& passes) {
+    return estimate_relative_error(layer_sums(shape, sums, passes, 0));
+}
 
 double estimated_relative_error(const Image& image) {
     double sum = 0;

@@ -1,47 +1,73 @@
 // The film: what the passes of one receiver add up to, pixel by pixel.
 #pragma once
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "host/gpu/buffer.h"
 #include "host/gpu/kernel.h"
 #include "host/image/image.h"
+#include "host/render/exact_sum.h"
 #include "host/render/film_error.h"
+#include "host/scene/scene.h"
+#include "host/image/pass_set.h"
 
 namespace etendue {
 
+// Which sums a film has.
+struct FilmShape {
+    uint32_t width = 0, height = 0;
+    bool merging = false;  // its kernels are compiled with MERGE_VERTICES, and it holds what tells the bias
+    bool stokes = false;   // with STOKES_IMAGE, and there are S1 to S3, too
+    uint32_t layers() const { return stokes ? 4 : 1; }
+    // Of a layer of a pixel: twin of struct FilmHalf in shaders/lib/film.glsl, of the even and the odd
+    // passes.
+    uint32_t sums_a_layer() const { return merging ? 6 : 4; }
+    uint64_t sums() const { return uint64_t(width) * height * layers() * sums_a_layer(); }
+};
+
+// Passes write their samples beside the film; once there are a few, or somebody looks, they are added to it.
 class Film {
   public:
-    // What pixels hold is undefined until clear() or write(). `merging`: its kernels are compiled with
-    // MERGE_VERTICES, and pixels hold what tells the bias. `stokes`: with STOKES_IMAGE, and there are S1 to
-    // S3, too.
-    Film(Device& device, uint32_t width, uint32_t height, bool merging = false, bool stokes = false);
+    // What it holds is undefined until clear() or write(). The time of its kernel is added to `timings`.
+    Film(Device& device, Scene& scene, const FilmShape& shape, KernelTimings& timings);
     Film(const Film&) = delete;
 
-    BufferTable buffers() const;  // "Film"; valid as long as the film
+    BufferTable buffers() const;  // "Film" and "Samples"; valid as long as the film
+    // Passes that there is room for beside the film: pass p stands at p % sample_passes().
+    uint32_t sample_passes() const { return sample_passes_; }
+    // Before kernels write the samples of passes `first` and later ones: of `wanted`, for how many there is
+    // room. These count as passes of the film from here on.
+    uint32_t begin_passes(uint64_t first, uint32_t wanted);
+    void add_samples();  // those that are not in the film yet
+    void warm_up();      // dispatches its kernel on nothing
 
-    bool merging() const { return merging_; }
-    bool stokes() const { return layers_ > 1; }
+    const FilmShape& shape() const { return shape_; }
 
     void resize(uint32_t width,
                 uint32_t height);  // to no more pixels than at first; what they hold is undefined
     void clear();
-    // The bytes are those of struct FilmPixel in shaders/lib/film.glsl, for every pixel and layer of it.
-    std::vector<std::byte> read() const;
-    void write(const std::vector<std::byte>& pixels);  // of a film of the same size and kind
-
-    // Mean radiance as R, G, B, and, where asked for, its error (estimate_errors, which takes longer than all
-    // else) as error.R, error.G, error.B; S1.R and error.S1.R to S3 likewise.
-    Image develop(bool errors) const;
-    RelativeError relative_error() const;  // without developing, which takes longer
+    std::vector<ExactSum> read();
+    void write(const std::vector<ExactSum>& sums);  // of a film of the same shape
 
   private:
-    FilmSums sums(uint32_t layer) const;
-    uint64_t bytes() const;
-    uint32_t width_, height_, layers_;
-    bool merging_;
-    Buffer pixels_;
+    bool ends_loops_early_;  // the driver: then not every path leaves a sample
+    FilmShape shape_;
+    KernelTimings& timings_;
+    CommandList commands_;
+    Buffer sums_, samples_;
+    Kernel accumulate_film_;
+    uint32_t sample_passes_ = 0;
+    PassRange not_added_;
 };
+
+// Mean radiance as R, G, B, and, where asked for, its error (estimate_errors, which takes longer than all
+// else) as error.R, error.G, error.B; S1.R and error.S1.R to S3 likewise.
+Image develop_film(const FilmShape& shape, std::span<const ExactSum> sums, const PassSet& passes,
+                   bool errors);
+// Of R, G and B, without developing, which takes longer.
+RelativeError film_relative_error(const FilmShape& shape, std::span<const ExactSum> sums,
+                                  const PassSet& passes);
 
 // Root of the relMSE that the error layer of an image amounts to: sqrt(mean(error² / (I² + 0.01 mean(I)²)))
 // over pixels and channels. Infinite where there is no such layer or it is.

@@ -9,6 +9,8 @@ namespace {
 
 using Plane = std::vector<float>;  // one value a pixel
 
+constexpr double rounding = 4 * 0x1p-24;  // of a mean of squares, relative
+
 // What a channel's samples say of the variance of their mean.
 struct Variance {
     double spread = 0;  // from the sum of squares, as if samples were independent
@@ -16,39 +18,38 @@ struct Variance {
     double even_mean = 0, odd_mean = 0;
 };
 
-double even_passes(double n) { return std::ceil(0.5 * n); }
-double odd_passes(double n) { return std::floor(0.5 * n); }
-
-Variance variance(const FilmPixel& p, int c) {
-    const double n = p.samples, even = even_passes(n), odd = odd_passes(n);
-    const double sum = double(p.sum[c]) + double(p.compensation[c]), mean = sum / n;
+Variance variance(const FilmSums& film, const FilmPixel& p, int c) {
+    const double even = double(film.even), odd = double(film.odd), n = even + odd;
+    const double mean = (p.sums[0][c] + p.sums[1][c]) / n;
     Variance v;
-    v.even_mean = 0.5 * (sum + double(p.difference[c])) / even;
-    v.odd_mean = 0.5 * (sum - double(p.difference[c])) / odd;
+    v.even_mean = p.sums[0][c] / even;
+    v.odd_mean = p.sums[1][c] / odd;
     // Means of e and o samples of variance s² differ by s² (1/e + 1/o) in the mean square.
     const double difference = v.even_mean - v.odd_mean;
     v.halves = difference * difference * even * odd / (n * n);
-    const double mean_square = double(p.squares[c]) / n, centred = mean_square - mean * mean;
-    // Float squares have rounded to about 2^-24 sqrt(n) of their sum: below, only the halves tell anything.
-    const double rounding = 4 * 0x1p-24 * std::sqrt(n) * mean_square;
-    v.spread = n > 2 && centred > rounding ? centred / (n - 1) : v.halves;
+    const double mean_square = (double(p.squares[0][c]) + double(p.squares[1][c])) / n,
+                 centred = mean_square - mean * mean;
+    // Squares are floats before they are summed: below their rounding only the halves tell anything.
+    v.spread = n > 2 && centred > rounding * mean_square ? centred / (n - 1) : v.halves;
     return v;
 }
 
 // Half the difference that the two halves make of the spread, all channels together: its square is the
 // variance of the spread. The spread itself where nothing better can be told.
-double spread_noise(const FilmPixel& p, const std::array<Variance, 3>& v) {
-    const double n = p.samples, even = even_passes(n), odd = odd_passes(n);
-    double squares = 0, spread = 0;
-    for (int c = 0; c < 3; ++c) squares += double(p.squares[c]), spread += v[size_t(c)].spread;
-    double even_square = 0.5 * (squares + double(p.squares_difference)) / even,
-           odd_square = 0.5 * (squares - double(p.squares_difference)) / odd;
-    const double rounding = 4 * 0x1p-24 * std::sqrt(n) * (even_square + odd_square);
+double spread_noise(const FilmSums& film, const FilmPixel& p, const std::array<Variance, 3>& v) {
+    const double even = double(film.even), odd = double(film.odd), n = even + odd;
+    double even_square = 0, odd_square = 0, spread = 0;
+    for (int c = 0; c < 3; ++c) {
+        even_square += double(p.squares[0][c]) / even;
+        odd_square += double(p.squares[1][c]) / odd;
+        spread += v[size_t(c)].spread;
+    }
+    const double unknown = rounding * (even_square + odd_square);
     for (const Variance& channel : v) {
         even_square -= channel.even_mean * channel.even_mean;
         odd_square -= channel.odd_mean * channel.odd_mean;
     }
-    if (n < 4 || even_square + odd_square <= rounding) return spread;
+    if (even < 2 || odd < 2 || even_square + odd_square <= unknown) return spread;
     const double even_variance = std::max(0.0, even_square) / (even - 1) * even / n,
                  odd_variance = std::max(0.0, odd_square) / (odd - 1) * odd / n;
     return 0.5 * (even_variance - odd_variance);
@@ -184,10 +185,9 @@ Plane pooled_ratio(const Neighbourhoods& near, const FilmSums& film, const Plane
 Plane squared_bias(const Neighbourhoods& near, const FilmSums& film, int c) {
     Plane even(film.pixels.size()), odd(film.pixels.size());
     for (size_t i = 0; i < even.size(); ++i) {
-        const double n = film.pixels[i].samples;
-        const FilmBias& b = film.bias[i];
-        even[i] = float((double(b.sum[c]) + double(b.difference[c])) / even_passes(n));  // 2 * mean
-        odd[i] = float((double(b.sum[c]) - double(b.difference[c])) / odd_passes(n));
+        const FilmBias& b = film.bias[i];  // of half the bias
+        even[i] = float(2 * double(b.sums[0][c]) / double(film.even));
+        odd[i] = float(2 * double(b.sums[1][c]) / double(film.odd));
     }
     const Plane product =
         combine(near.tent(even, 1), near.tent(odd, 1), [](float a, float b) { return a * b; });
@@ -196,23 +196,18 @@ Plane squared_bias(const Neighbourhoods& near, const FilmSums& film, int c) {
     return result;
 }
 
-uint32_t passes_of(const FilmSums& film) {
-    uint32_t passes = film.pixels.empty() ? 0 : film.pixels[0].samples;
-    for (const FilmPixel& p : film.pixels) passes = std::min(passes, p.samples);
-    return passes;
-}
+bool has_both_halves(const FilmSums& film) { return film.even > 0 && film.odd > 0; }
 
 }  // namespace
 
-glm::dvec3 mean(const FilmPixel& pixel) {
-    if (pixel.samples == 0) return glm::dvec3(0);
-    return (glm::dvec3(pixel.sum) + glm::dvec3(pixel.compensation)) / double(pixel.samples);
+glm::dvec3 mean(const FilmSums& film, const FilmPixel& pixel) {
+    if (film.passes() == 0) return glm::dvec3(0);
+    return (pixel.sums[0] + pixel.sums[1]) / double(film.passes());
 }
 
 std::vector<glm::vec3> estimate_errors(const FilmSums& film) {
     const size_t count = film.pixels.size();
-    const uint32_t passes = passes_of(film);
-    if (passes < 2) return std::vector<glm::vec3>(count, glm::vec3(INFINITY));
+    if (!has_both_halves(film)) return std::vector<glm::vec3>(count, glm::vec3(INFINITY));
     const Neighbourhoods near(film.width, film.height);
     std::array<Plane, 3> spread, halves;
     for (size_t c = 0; c < 3; ++c) spread[c].resize(count), halves[c].resize(count);
@@ -220,13 +215,13 @@ std::vector<glm::vec3> estimate_errors(const FilmSums& film) {
     for (size_t i = 0; i < count; ++i) {
         std::array<Variance, 3> v;
         for (size_t c = 0; c < 3; ++c) {
-            v[c] = variance(film.pixels[i], int(c));
+            v[c] = variance(film, film.pixels[i], int(c));
             spread[c][i] = float(v[c].spread), halves[c][i] = float(v[c].halves);
             all[i] += spread[c][i];
         }
-        noise[i] = float(spread_noise(film.pixels[i], v));
+        noise[i] = float(spread_noise(film, film.pixels[i], v));
     }
-    const auto shares = shrinkage(near, all, noise, float(passes));
+    const auto shares = shrinkage(near, all, noise, float(film.passes()));
     for (Plane& channel : spread) channel = shrink(near, channel, shares);
     Plane ratio(count), valid(count), total(count);
     for (const Plane& channel : spread)
@@ -257,9 +252,9 @@ double RelativeError::bound() const {
 }
 
 RelativeError estimate_relative_error(const FilmSums& film) {
-    if (passes_of(film) < 2) return {INFINITY, 0};
+    if (!has_both_halves(film)) return {INFINITY, 0};
     glm::dvec3 image_mean(0);
-    for (const FilmPixel& p : film.pixels) image_mean += mean(p) / double(film.pixels.size());
+    for (const FilmPixel& p : film.pixels) image_mean += mean(film, p) / double(film.pixels.size());
     const Neighbourhoods near(film.width, film.height);
     double sum = 0, squares = 0;
     std::vector<double> contributions(film.pixels.size());
@@ -267,7 +262,7 @@ RelativeError estimate_relative_error(const FilmSums& film) {
         const Plane bias = film.bias.empty() ? Plane(film.pixels.size()) : squared_bias(near, film, c);
         const double floor = std::max(0.01 * image_mean[c] * image_mean[c], 1e-300);
         for (size_t i = 0; i < film.pixels.size(); ++i) {
-            const Variance v = variance(film.pixels[i], c);
+            const Variance v = variance(film, film.pixels[i], c);
             // The product of the halves has truth² for mean: the square of the mean would be too large, most
             // in the pixels that happen to be too bright.
             const double truth = std::max(0.0, v.even_mean * v.odd_mean);

@@ -17,28 +17,28 @@
 
 namespace etendue {
 
-// Twin of struct FilmPixel in shaders/lib/film.glsl without merging, ...
+// Of one layer of a pixel, over the even passes and over the odd ones.
 struct FilmPixel {
-    glm::vec3 sum;
-    uint32_t samples;
-    glm::vec3 compensation, difference, squares;
-    float squares_difference;
+    glm::dvec3 sums[2];
+    glm::vec3 squares[2];
 };
-// ... and of what merging adds to it.
+// What merging adds to it (shaders/features/bias.glsl).
 struct FilmBias {
-    glm::vec3 sum, difference;
+    glm::vec3 sums[2];
 };
 
 struct FilmSums {
     uint32_t width = 0, height = 0;
+    uint64_t even = 0, odd = 0;  // passes
     std::vector<FilmPixel> pixels;
     std::vector<FilmBias> bias;  // empty without merging
+    uint64_t passes() const { return even + odd; }
 };
 
-glm::dvec3 mean(const FilmPixel& pixel);  // 0 before the first pass
+glm::dvec3 mean(const FilmSums& film, const FilmPixel& pixel);  // 0 before the first pass
 
 // Root of the expected square of each pixel's difference from the truth, by channel: standard error and, with
-// merging, bias. Infinite before the second pass.
+// merging, bias. Infinite until there is an even pass and an odd one.
 std::vector<glm::vec3> estimate_errors(const FilmSums& film);
 
 // Of the relMSE: mean((I - truth)² / (truth² + 0.01 mean(truth)²)) over pixels and channels.
@@ -48,7 +48,7 @@ struct RelativeError {
     double value() const;    // root of the estimate
     double bound() const;    // what the root of the true relMSE does not exceed, with 95 % confidence
 };
-RelativeError estimate_relative_error(const FilmSums& film);  // infinite before the second pass
+RelativeError estimate_relative_error(const FilmSums& film);  // infinite likewise
 
 // When to stop for an error: once its bound lies below. Stopping at the first of many looks that happens to
 // please would stop too early; so a look is taken only where the film has grown by an eighth since the last.

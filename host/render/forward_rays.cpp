@@ -95,6 +95,26 @@ BufferTable ForwardRays::buffers() const {
 }
 
 void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings) {
+    count_ = fitting_.value_or(all_);
+    trace_fitting(commands, pass, seed, timings);
+    if (pass == 0) fitting_ = count_;
+    if (vertices_ && techniques_.merge && expected_vertices_ > 0)
+        vertices_->build(commands, expected_vertices_);
+}
+
+bool ForwardRays::find_fitting(CommandList& commands, uint64_t first, SpectralPasses& spectra, uint32_t seed,
+                               KernelTimings& timings) {
+    if (first == 0 || fitting_ || !vertices_) return false;
+    spectra.write(0, 1, seed);
+    count_ = all_;
+    trace_fitting(commands, 0, seed, timings);
+    fitting_ = count_;
+    splats_.fill(0, splat_bytes());
+    paths_ = splits_ = 0;
+    return true;
+}
+
+void ForwardRays::trace_fitting(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings) {
     while (true) {
         const ForwardPass values = describe_pass(scene_, settings_, pass, count_, seed);
         pass_.write(&values, sizeof values);
@@ -104,12 +124,11 @@ void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, Ker
         if (!vertices_) return;
         const VertexMap::Counts counts = vertices_->counts();
         expected_vertices_ = counts.stored;
-        if (counts.wanted == counts.stored || count_ == 1) break;
+        if (counts.wanted == counts.stored || count_ == 1) return;
         count_ = std::max(1u, uint32_t(0.9 * count_ * counts.stored / counts.wanted));
         splats_.fill(0, splat_bytes());
         splits_++;
     }
-    if (techniques_.merge && expected_vertices_ > 0) vertices_->build(commands, expected_vertices_);
 }
 
 void ForwardRays::trace_paths(CommandList& commands, KernelTimings& timings) {
@@ -127,12 +146,8 @@ void ForwardRays::restart(const FilmView& view) {
     settings_.receiver = view.receiver;
     settings_.width = view.width, settings_.height = view.height;
     all_ = forward_paths_a_pass(settings_);
-    resume(0);
-}
-
-void ForwardRays::resume(uint32_t paths_a_pass) {
+    fitting_.reset();
     splats_.fill(0, splat_bytes());
-    count_ = paths_a_pass > 0 ? std::min(paths_a_pass, all_) : all_;
 }
 
 void ForwardRays::warm_up(CommandList& commands) {

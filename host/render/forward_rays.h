@@ -33,25 +33,31 @@ class ForwardRays {
                 const BufferTable& film);
     // What kernels of backward rays share.
     BufferTable buffers() const;
-    // Traces the forward paths of a pass and sorts their vertices. Where the vertices do not fit, the pass is
-    // repeated with fewer paths, and so are all that follow.
+    // Traces the forward paths of a pass and sorts their vertices. Every pass begins with as many paths as
+    // fitted in pass 0, and is repeated with fewer where their vertices do not fit: so what a pass traces
+    // does not depend on which ones went before.
     void trace(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings);
+    // To be called before pass `first` is traced: finds out, where nobody knows yet and vertices are kept,
+    // how many paths fit in pass 0, by tracing its forward paths. Whether it did: then counters are to be
+    // cleared.
+    bool find_fitting(CommandList& commands, uint64_t first, SpectralPasses& spectra, uint32_t seed,
+                      KernelTimings& timings);
     void warm_up(CommandList& commands);
     // Paths traced, and passes that were repeated with fewer, since the last call.
     uint64_t take_paths() { return std::exchange(paths_, 0); }
     uint64_t take_splits() { return std::exchange(splits_, 0); }
-    uint32_t paths_a_pass() const { return count_; }
+    uint32_t paths_a_pass() const { return fitting_.value_or(all_); }
     void restart(const FilmView& view);
-    // Goes on behind a pass of that many paths; 0 = there was none.
-    void resume(uint32_t paths_a_pass);
 
   private:
     uint64_t splat_bytes() const;  // of the view at hand
+    void trace_fitting(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings);
     void trace_paths(CommandList& commands, KernelTimings& timings);
     const Scene& scene_;
     RenderSettings settings_;
     Techniques techniques_;
-    uint32_t all_, count_;  // forward paths a pass: where their vertices fit, and now
+    uint32_t all_, count_;             // forward paths a pass: where their vertices fit, and now
+    std::optional<uint32_t> fitting_;  // whose vertices fit in pass 0, once known
     uint64_t paths_ = 0, splits_ = 0;
     uint32_t expected_vertices_ = 0;
     Buffer pass_, splats_, path_ends_;

@@ -14,11 +14,12 @@ constexpr uint32_t turns_a_path = 1000;
 
 Renderer::FusedPipeline::FusedPipeline(Device& device, Scene& scene, const RenderSettings& s,
                                        const Techniques& techniques, ForwardRays* forward,
-                                       SpectralPasses& spectra, const BufferTable& film)
-    : Pipeline(s, forward, spectra) {
-    trace_paths = make_kernel(device, scene, "kernels/trace_paths.comp", film, techniques.backward_defines());
-    // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight. Where the driver
-    // ends loops early a lane gets no more paths than fit.
+                                       SpectralPasses& spectra, Film& film, const BufferTable& buffers)
+    : Pipeline(s, forward, spectra, film) {
+    trace_paths =
+        make_kernel(device, scene, "kernels/trace_paths.comp", buffers, techniques.backward_defines());
+    // A lane takes several pixels, so that it is refilled when a path ends; a GPU wants all pixels in flight.
+    // Where the driver ends loops early a lane gets no more paths than fit.
     const uint32_t turns = device.description.max_loop_turns;
     pixels_a_group = trace_paths.group_size() * (device.description.type == "CPU" && turns == 0 ? 8 : 1);
     most_at_once = turns > 0 ? std::max(1u, turns / turns_a_path) : ~0u;
@@ -33,6 +34,7 @@ bool Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_
     // With forward rays pass by pass: each meets its own.
     for (uint32_t done = 0, at_once; done < count; done += at_once) {
         at_once = forward ? 1 : std::min({count - done, spectra.capacity(), most_at_once});
+        at_once = film.begin_passes(first + done, at_once);
         spectra.write(first + done, at_once, settings.seed);
         if (forward) forward->trace(commands, first + done, settings.seed, timings);
         const uint32_t all = settings.width * settings.height;
@@ -50,6 +52,7 @@ bool Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_
                                {"end_pixel", pixel + pixels},
                                {"first_sample", uint32_t(first) + done},
                                {"sample_count", at_once},
+                               {"sample_passes", film.sample_passes()},
                                {"seed", settings.seed}});
             commands.run(&timings);
             pixels_a_second = double(pixels) * at_once /

@@ -81,6 +81,26 @@ nlohmann::json to_json(const RenderCounters& counters) {
     return json;
 }
 
+void add(RenderCounters& counters, const RenderCounters& more) {
+    std::vector<double> reals;
+    std::vector<uint64_t> counts;
+    const uint64_t paths_a_pass = std::max(counters.forward_paths_a_pass, more.forward_paths_a_pass);
+    visit_counters(more, [&](const char*, auto value) {
+        if constexpr (std::is_same_v<decltype(value), double>)
+            reals.push_back(value);
+        else
+            counts.push_back(value);
+    });
+    size_t real = 0, count = 0;
+    visit_counters(counters, [&](const char*, auto& value) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
+            value += reals[real++];
+        else
+            value += counts[count++];
+    });
+    counters.forward_paths_a_pass = paths_a_pass;
+}
+
 RenderCounters counters_from_json(const nlohmann::json& json) {
     RenderCounters counters;
     visit_counters(counters, [&](const char* name, auto& value) {
@@ -141,8 +161,9 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
     techniques.stokes = settings_.stokes;
     techniques.connect &= settings_.connect;
-    film_ =
-        std::make_unique<Film>(device, settings.width, settings.height, techniques.merge, settings_.stokes);
+    film_ = std::make_unique<Film>(
+        device, scene, FilmShape{settings.width, settings.height, techniques.merge, settings_.stokes},
+        timings_);
     if (!settings.restarts_first) film_->clear();
     BufferTable film = film_->buffers();
     film["CounterSums"] = &counter_sums_;
@@ -165,27 +186,36 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     }
     if (schedule_ == Schedule::fused)
         pipeline_ = std::make_unique<FusedPipeline>(device, scene, settings_, techniques, forward_.get(),
-                                                    spectra_, film);
+                                                    spectra_, *film_, film);
     else
-        pipeline_ = std::make_unique<WavefrontPipeline>(device, scene, settings_, techniques, forward_.get(),
-                                                        spectra_, film, schedule_ == Schedule::by_class);
+        pipeline_ =
+            std::make_unique<WavefrontPipeline>(device, scene, settings_, techniques, forward_.get(),
+                                                spectra_, *film_, film, schedule_ == Schedule::by_class);
     const auto start = std::chrono::steady_clock::now();
     compile_aside(device, newly_compiled(scene));
     if (forward_) forward_->warm_up(commands_);
     pipeline_->warm_up(commands_);
+    film_->warm_up();
     warm_up_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 Renderer::~Renderer() = default;
 
 bool Renderer::render_passes(uint32_t count) {
-    const auto start = std::chrono::steady_clock::now();
-    if (!pipeline_->run(commands_, passes_, count, timings_)) return false;
-    passes_ += count;
-    read_counters();
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    seconds_ += seconds;
-    last_pass_seconds_ = seconds / count;
+    for (uint64_t left = count; left > 0;) {
+        const PassRange range = passes_.next_missing(first_pass_, left);
+        if (forward_ && forward_->find_fitting(commands_, range.first, spectra_, settings_.seed, timings_))
+            counter_sums_.fill(0);
+        const auto start = std::chrono::steady_clock::now();
+        if (!pipeline_->run(commands_, range.first, uint32_t(range.count()), timings_)) return false;
+        passes_.add(range);
+        read_counters();
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        seconds_ += seconds;
+        last_pass_seconds_ = seconds / double(range.count());
+        left -= range.count();
+    }
     return true;
 }
 
@@ -220,7 +250,7 @@ void Renderer::restart(uint32_t seed, const FilmView& view) {
     counter_sums_.fill(0);
     if (forward_) forward_->restart(view);
     counters_ = {};
-    passes_ = 0;
+    passes_ = {};
 }
 
 uint32_t Renderer::passes_in(double seconds) const {
@@ -288,11 +318,12 @@ void Renderer::read_picture(std::vector<glm::vec3>& picture) {
         develop_film_ =
             make_color_kernel(device_, scene_, "kernels/develop_film.comp", buffers,
                               fmt::format("#define MERGE_VERTICES {:d}\n#define STOKES_IMAGE {:d}\n",
-                                          film_->merging(), film_->stokes()));
+                                          film_->shape().merging, film_->shape().stokes));
     }
+    film_->add_samples();
     const uint32_t pixels = settings_.width * settings_.height;
     commands_.dispatch(develop_film_, (pixels + develop_film_.group_size() - 1) / develop_film_.group_size(),
-                       {{"pixels", pixels}});
+                       {{"pixels", pixels}, {"weight", passes() ? float(1.0 / double(passes())) : 0.0f}});
     commands_.run(&timings_);
     picture.resize(pixels);
     picture_.read(picture.data(), picture.size() * sizeof(glm::vec3));
@@ -300,11 +331,13 @@ void Renderer::read_picture(std::vector<glm::vec3>& picture) {
 
 FilmState Renderer::state() const {
     return {film_->read(), passes_, counters_,
-            spectral_film_ ? spectral_film_->read() : std::vector<std::byte>()};
+            spectral_film_ ? spectral_film_->read() : std::vector<ExactSum>()};
 }
 
 void Renderer::add_spectra(Image& image) const {
-    if (spectral_film_) spectral_film_->add_to(image, passes_);
+    if (spectral_film_)
+        etendue::add_spectra(image, spectral_film_->read(), settings_.spectral_bins, film_->shape().layers(),
+                             passes());
 }
 
 void Renderer::restore(const FilmState& state) {
@@ -312,7 +345,6 @@ void Renderer::restore(const FilmState& state) {
     if (spectral_film_) spectral_film_->write(state.bins);
     passes_ = state.passes;
     counters_ = state.counters;
-    if (forward_) forward_->resume(uint32_t(counters_.forward_paths_a_pass));
 }
 
 }  // namespace etendue

@@ -1,7 +1,9 @@
 // Passes over a scene: the schedule of kernels that fills the film of one receiver.
 //
-// A pass is one backward path a pixel. Each pixel's samples are added in order of their index whatever the
-// size of a batch, so the film after n passes is the same bits for the same seed and device.
+// A pass is one backward path a pixel, and what it brings depends on its number and the settings alone:
+// random numbers, wavelengths, radius of merging and number of forward paths. Sums do not depend on their
+// order. So a film is the same bits for the same passes, seed and device, whatever the batches and whoever
+// rendered them.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -65,20 +67,21 @@ struct RenderCounters {
     uint64_t forward_paths = 0, forward_rays = 0, forward_shadow_rays = 0, forward_non_finite = 0,
              forward_depth_limit = 0;
     uint64_t split_passes = 0;  // whose forward vertices did not fit, and that went on with fewer paths
-    uint64_t forward_paths_a_pass = 0;  // of the last one: fewer where vertices did not fit
+    uint64_t forward_paths_a_pass = 0;  // of the first one: fewer where vertices did not fit
     double emitted = 0, absorbed = 0, forward_escaped = 0, forward_depth_limit_lost = 0;
     double roulette = 0;  // what Russian roulette took, less what it gave to the survivors
 };
 uint64_t all_rays(const RenderCounters& counters);
+void add(RenderCounters& counters, const RenderCounters& more);  // of other passes of the same run
 nlohmann::json to_json(const RenderCounters& counters);
 RenderCounters counters_from_json(const nlohmann::json& json);
 
-// What accumulates over passes; the bytes are those of Film::read.
+// What accumulates over passes.
 struct FilmState {
-    std::vector<std::byte> pixels;
-    uint64_t passes = 0;
+    std::vector<ExactSum> pixels;  // of Film
+    PassSet passes;
     RenderCounters counters;
-    std::vector<std::byte> bins;  // of the spectral image, if any
+    std::vector<ExactSum> bins;  // of SpectralFilm, if there is one
 };
 
 // SPIR-V of a kernel, bytes, beyond which drivers take more than some seconds to compile it
@@ -101,8 +104,10 @@ class Renderer {
     ~Renderer();
     Renderer(const Renderer&) = delete;
 
-    // False: the interrupt ended it within a pass, and the film must be restarted.
+    // The first passes that the film lacks, from begin_at() on. False: the interrupt ended it within a pass,
+    // and the film must be restarted.
     bool render_passes(uint32_t count);
+    void begin_at(uint64_t pass) { first_pass_ = pass; }
     // Asked within passes whether to stop, every few hundredths of a second where that can be.
     void set_interrupt(std::function<bool()> interrupt);
     // An empty film again; kernels and timings stay. What move_receiver has changed is seen from here on.
@@ -112,7 +117,8 @@ class Renderer {
     // How many passes take about `seconds` by the speed of the last batch; 1 before the first.
     uint32_t passes_in(double seconds) const;
 
-    uint64_t passes() const { return passes_; }
+    uint64_t passes() const { return passes_.count(); }
+    const PassSet& pass_set() const { return passes_; }
     const RenderCounters& counters() const { return counters_; }
     const KernelTimings& timings() const { return timings_; }
     double seconds() const { return seconds_; }                  // in render_passes
@@ -122,13 +128,18 @@ class Renderer {
     // The same algorithm is chosen for another reason than was known when the renderer was made.
     void explain(const AlgorithmChoice& choice) { choice_ = choice; }
 
-    Image develop(bool errors = true) const { return film_->develop(errors); }
+    const FilmShape& film_shape() const { return film_->shape(); }
+    Image develop(bool errors = true) const {
+        return develop_film(film_->shape(), film_->read(), passes_, errors);
+    }
     // The mean radiance alone, developed on the device.
     void read_picture(std::vector<glm::vec3>& picture);
-    bool is_stokes() const { return film_->stokes(); }  // S1 to S3 are developed, too
-    // Adds the spectra of a spectral image, if it is one (SpectralFilm::add_to).
+    bool is_stokes() const { return film_->shape().stokes; }  // S1 to S3 are developed, too
+    // Adds the spectra of a spectral image, if it is one (add_spectra in spectral_film.h).
     void add_spectra(Image& image) const;
-    RelativeError relative_error() const { return film_->relative_error(); }
+    RelativeError relative_error() const {
+        return film_relative_error(film_->shape(), film_->read(), passes_);
+    }
     // Adds albedo.RGB, normal.XYZ and depth.Z of what the pixels see, by `count` primary rays a pixel.
     void add_aovs(Image& image, uint32_t count);
 
@@ -147,6 +158,7 @@ class Renderer {
     RenderSettings settings_;
     Schedule schedule_;
     uint32_t most_pixels_;
+    KernelTimings timings_;
     std::unique_ptr<Film> film_;
     std::optional<SpectralFilm> spectral_film_;
     Buffer counter_sums_;
@@ -158,9 +170,9 @@ class Renderer {
     CommandList commands_;
     Buffer picture_;
     Kernel develop_film_;  // none until a picture is read
-    KernelTimings timings_;
     RenderCounters counters_;
-    uint64_t passes_ = 0;
+    PassSet passes_;
+    uint64_t first_pass_ = 0;
     double seconds_ = 0, last_pass_seconds_ = 0, warm_up_seconds_ = 0;
 };
 

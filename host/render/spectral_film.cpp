@@ -13,7 +13,7 @@ SpectralFilm::SpectralFilm(Device& device, uint32_t pixels, uint32_t bins, bool 
     : pixels_(pixels),
       bins_(bins),
       layers_(stokes ? 4 : 1),
-      sums_(device, uint64_t(pixels) * layers_ * bins * sizeof(glm::vec2), "SpectralFilm") {
+      sums_(device, sums() * sizeof(ExactSum), "SpectralFilm") {
     clear();
 }
 
@@ -21,23 +21,29 @@ BufferTable SpectralFilm::buffers() const { return {{"SpectralFilm", &sums_}}; }
 
 void SpectralFilm::clear() { sums_.fill(0); }
 
-std::vector<std::byte> SpectralFilm::read() const { return sums_.read_array<std::byte>(sums_.bytes()); }
+std::vector<ExactSum> SpectralFilm::read() const { return sums_.read_array<ExactSum>(sums()); }
 
-void SpectralFilm::write(const std::vector<std::byte>& state) { sums_.write(state.data(), state.size()); }
+void SpectralFilm::write(const std::vector<ExactSum>& sums) {
+    sums_.write(sums.data(), sums.size() * sizeof(ExactSum));
+}
 
-void SpectralFilm::add_to(Image& image, uint64_t passes) const {
-    const auto sums =
-        sums_.read_array<glm::vec2>(uint64_t(pixels_) * layers_ * bins_);  // and what they have lost
-    std::vector<float> means(sums.size());
-    for (size_t i = 0; i < sums.size(); ++i)
-        means[i] = passes ? float((double(sums[i].x) + double(sums[i].y)) / double(passes)) : 0.0f;
+void add_spectra(Image& image, std::span<const ExactSum> sums, uint32_t bins, uint32_t layers,
+                 uint64_t passes) {
+    std::vector<float> means;
+    means.reserve(pixel_count(image) * layers * bins);
+    const size_t sums_a_layer = (bins + 2) / 3;
+    for (size_t layer = 0; layer < pixel_count(image) * layers; ++layer)
+        for (uint32_t bin = 0; bin < bins; ++bin) {
+            const double sum = value(sums[layer * sums_a_layer + bin / 3])[int(bin % 3)];
+            means.push_back(passes ? float(sum / double(passes)) : 0.0f);
+        }
     std::vector<std::string> names;
-    for (uint32_t layer = 0; layer < layers_; ++layer)
-        for (uint32_t bin = 0; bin < bins_; ++bin) names.push_back(spectral_channel(bin, bins_, layer));
+    for (uint32_t layer = 0; layer < layers; ++layer)
+        for (uint32_t bin = 0; bin < bins; ++bin) names.push_back(spectral_channel(bin, bins, layer));
     add_channels(image, names, means, names.size());
     image.attributes["spectralLayoutVersion"] = std::string("1.0");
     image.attributes["emissiveUnits"] = std::string("W.m^-2.sr^-1.nm^-1");
-    if (layers_ > 1) image.attributes["polarisationHandedness"] = std::string("right");
+    if (layers > 1) image.attributes["polarisationHandedness"] = std::string("right");
 }
 
 std::string spectral_channel(uint32_t bin, uint32_t bins, uint32_t parameter) {

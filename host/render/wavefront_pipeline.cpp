@@ -22,13 +22,13 @@ BufferTable joined(BufferTable a, const BufferTable& b) {
 
 Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, const RenderSettings& s,
                                                const Techniques& techniques, ForwardRays* forward,
-                                               SpectralPasses& spectra, const BufferTable& film,
-                                               bool by_class)
-    : Pipeline(s, forward, spectra),
+                                               SpectralPasses& spectra, Film& film,
+                                               const BufferTable& buffers, bool by_class)
+    : Pipeline(s, forward, spectra, film),
       paths(device, scene, Wavefront::Direction::backward, techniques,
-            slots_for(device, s.width * s.height, forward), by_class, film),
-      accumulate_film(make_kernel(device, scene, "kernels/accumulate_film.comp",
-                                  joined(film, paths.buffers()), techniques.backward_defines())) {}
+            slots_for(device, s.width * s.height, forward), by_class, buffers),
+      record_samples(make_kernel(device, scene, "kernels/record_samples.comp",
+                                 joined(buffers, paths.buffers()), techniques.backward_defines())) {}
 
 bool Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
                                       KernelTimings& timings) {
@@ -36,13 +36,14 @@ bool Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uin
     const uint32_t tile = std::min(pixels, paths.slots());
     const uint32_t samples_at_once =
         forward ? 1 : std::min(std::max(1u, paths.slots() / pixels), spectra.capacity());
-    for (uint32_t sample = 0; sample < count; sample += samples_at_once) {
-        spectra.write(first + sample, std::min(samples_at_once, count - sample), settings.seed);
+    for (uint32_t sample = 0, at_once; sample < count; sample += at_once) {
+        at_once = film.begin_passes(first + sample, std::min(samples_at_once, count - sample));
+        spectra.write(first + sample, at_once, settings.seed);
         if (forward) forward->trace(commands, first + sample, settings.seed, timings);
         for (uint32_t pixel = 0; pixel < pixels; pixel += tile) {
             if (interrupted()) return false;
-            run_tile(commands, pixel, std::min(tile, pixels - pixel), uint32_t(first) + sample,
-                     std::min(samples_at_once, count - sample), timings);
+            run_tile(commands, pixel, std::min(tile, pixels - pixel), uint32_t(first) + sample, at_once,
+                     timings);
         }
     }
     return true;
@@ -59,14 +60,19 @@ void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first
                  {"height", settings.height},
                  {"seed", settings.seed}},
                 timings);
-    commands.dispatch(accumulate_film, Wavefront::groups(accumulate_film, pixels, 1),
-                      {{"first_pixel", first_pixel}, {"tile_pixels", pixels}, {"samples", samples}});
+    commands.dispatch(record_samples, Wavefront::groups(record_samples, pixels, 1),
+                      {{"first_pixel", first_pixel},
+                       {"tile_pixels", pixels},
+                       {"pixels", settings.width * settings.height},
+                       {"sample_passes", film.sample_passes()},
+                       {"first_sample", first_sample},
+                       {"samples_at_once", samples}});
     commands.run(&timings);
 }
 
 void Renderer::WavefrontPipeline::warm_up(CommandList& commands) {
     paths.warm_up(commands);
-    commands.dispatch(accumulate_film, 1);
+    commands.dispatch(record_samples, 1);
     commands.run();
 }
 

@@ -1,7 +1,10 @@
 // The film's mean radiance, one lane a pixel; black before the first pass.
 // Reads: film. Writes: picture. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
-layout(push_constant) uniform Push { uint pixels; };
+layout(push_constant) uniform Push {
+    uint pixels;
+    float weight;  // 1 / passes; 0 before the first
+};
 
 #include "lib/film.glsl"
 
@@ -10,6 +13,5 @@ layout(scalar, set = 0) writeonly buffer Picture { vec3 picture[]; };
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= pixels) return;
-    FilmPixel pixel = film[FILM_LAYERS * i];
-    picture[i] = pixel.samples == 0u ? vec3(0) : (pixel.sum + pixel.compensation) / float(pixel.samples);
+    picture[i] = (rounded(film[film_place(i, 0u, 0u)].sum) + rounded(film[film_place(i, 0u, 1u)].sum)) * weight;
 }

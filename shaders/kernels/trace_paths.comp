@@ -1,7 +1,7 @@
 // Whole backward paths in one kernel: for scenes of few classes, where keeping a path in registers costs less than its
 // traffic between kernels. Every lane works through its pixels in turn and starts the next path in the same iteration in
 // which one ends, so that lanes stay full.
-// Reads: scene. Writes: film, counters of its lane. Barrier expected: after the dispatch.
+// Reads: scene. Writes: samples, counters of its lane. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
@@ -11,6 +11,7 @@ layout(push_constant) uniform Push {
     uint first_pixel, end_pixel;  // of this dispatch
     uint first_sample;   // index of the first pass
     uint sample_count;   // passes of this dispatch
+    uint sample_passes;  // that there is room for
     uint seed;
 };
 
@@ -25,8 +26,6 @@ void main() {
     Counters counters = no_counters();
     Path path;
     bool alive = false;
-    FilmPixel sum;
-    if (pixel < end_pixel) sum = film[FILM_LAYERS * pixel];
     while (pixel < end_pixel) {
         if (!alive) {
             begin_pass(sample_index);
@@ -40,12 +39,11 @@ void main() {
         alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
         trace_shadows(shadow, vertex_shadow, path.radiance, counters);
         if (!alive) {
-            record_sample(sum, pixel, path, counters);
+            uint place = sample_place(pixel, width * height, first_sample + sample_index, sample_passes);
+            record_sample(place, pixel, path, counters);
             if (++sample_index == sample_count) {
-                film[FILM_LAYERS * pixel] = sum;
                 pixel += lanes;
                 sample_index = 0u;
-                if (pixel < end_pixel) sum = film[FILM_LAYERS * pixel];
             }
         }
     }

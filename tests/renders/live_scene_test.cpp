@@ -36,7 +36,7 @@ SceneBuilder room(const Values& v) {
     return s;
 }
 
-std::vector<std::byte> film(Scene& scene, Algorithm algorithm = Algorithm::bidirectional) {
+std::vector<ExactSum> film(Scene& scene, Algorithm algorithm = Algorithm::bidirectional) {
     RenderSettings settings;
     settings.width = 24, settings.height = 24;
     settings.receiver = scene.receivers[0].ref;
@@ -46,7 +46,7 @@ std::vector<std::byte> film(Scene& scene, Algorithm algorithm = Algorithm::bidir
     return renderer.state().pixels;
 }
 
-std::vector<std::byte> film_of(const Values& values, const std::set<std::string>& varying = {}) {
+std::vector<ExactSum> film_of(const Values& values, const std::set<std::string>& varying = {}) {
     SceneOptions options = test_options();
     options.varying = varying;
     Scene scene = compile_scene(test_device(), room(values).import(), options);
@@ -88,7 +88,7 @@ TEST_CASE("an edited scene shows what a file with the new values shows") {
             varying.insert(std::string(interface_info(interface_of(object.part)).name) + "/" +
                            object.class_name + "/" + name);
         CAPTURE(name);
-        const std::vector<std::byte> shown = film(*next);
+        const std::vector<ExactSum> shown = film(*next);
         CHECK(shown == film_of(now, varying));
         return compiled(*next);
     };
@@ -293,13 +293,13 @@ TEST_CASE("new classes, places and media take effect, and receivers that were mo
     moved[3].z -= 1;
     const auto objects = live.objects();
     CHECK(live.place(find(objects, Part::receiver), moved) == live.scene());
-    const std::vector<std::byte> seen = film(*live.scene());
+    const std::vector<ExactSum> seen = film(*live.scene());
 
     const LiveObject& wall = find(objects, Part::surface);
     live.set_class(wall, "conductor", {{"alpha", 0.3}});
     live.accept();
     CHECK(live.objects()[0].class_name == "conductor");
-    const std::vector<std::byte> of_metal = film(*live.scene());
+    const std::vector<ExactSum> of_metal = film(*live.scene());
     CHECK(of_metal != seen);
     CHECK(live.scene()->receivers[0].world_from_local == moved);
 
@@ -328,7 +328,7 @@ TEST_CASE("what is wrong changes nothing and is told in the words of a scene fil
     LiveScene live(test_device(), file, test_options());
     const auto objects = live.objects();
     const std::shared_ptr<Scene> scene = live.scene();
-    const std::vector<std::byte> seen = film(*scene);
+    const std::vector<ExactSum> seen = film(*scene);
     const auto message = [&](auto change) {
         try {
             change();
@@ -382,7 +382,7 @@ TEST_CASE("a broken shader is one line, and the scene before it stays") {
     SceneOptions options = test_options();
     options.shaders = shaders;
     LiveScene live(test_device(), write(folder, room({})), options);
-    const std::vector<std::byte> seen = film(*live.scene());
+    const std::vector<ExactSum> seen = film(*live.scene());
     const std::string lambertian = read_text(shaders / "surfaces/lambertian.glsl");
     write_text(shaders / "surfaces/lambertian.glsl", lambertian + "\nint x = ;\n");
     std::string message;

@@ -22,7 +22,7 @@ SceneBuilder room(const Place& camera, double yfov, double ymag) {
     return s;
 }
 
-std::vector<std::byte> film(Renderer& renderer) {
+std::vector<ExactSum> film(Renderer& renderer) {
     renderer.render_passes(4);
     return renderer.state().pixels;
 }
@@ -48,7 +48,7 @@ TEST_CASE("a receiver that has moved sees what one sees that was there from the 
             const Receiver& wanted = there.receivers[receiver];
             const Receiver first = scene.receivers[receiver];
             Renderer renderer(test_device(), scene, settings_for(scene, receiver, algorithm));
-            const std::vector<std::byte> at_first = film(renderer);
+            const std::vector<ExactSum> at_first = film(renderer);
             const size_t compiled = scene.kernels.size();
             move_receiver(scene, receiver, wanted.world_from_local, wanted.parameters);
             renderer.restart(7);
