@@ -31,7 +31,7 @@ struct SceneChoice {
 };
 
 struct RenderOptions : SceneChoice {
-    std::filesystem::path output;    // never empty; default_output(scene) where none was given
+    std::filesystem::path output;    // default_output(scene) where none was given; empty = none, of a part
     uint64_t first_pass = 0;         // of the run: others may make those before, and merge them
     std::optional<uint64_t> passes;  // exactly one of the three goals is set; 64 passes by default
     std::optional<double> seconds, error;

@@ -41,8 +41,9 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     CLI::App* render = app.add_subcommand("render", "Render a glTF scene to an OpenEXR image");
     render->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
     render
-        ->add_option("-o,--output", options.output,
-                     "Image to write (default: the scene's name with .exr, here)")
+        ->add_option(
+            "-o,--output", options.output,
+            "Image to write (default: the scene's name with .exr, here; none of a range with --checkpoint)")
         ->option_text("OUT.exr");
     auto* passes = render->add_option(
         "--passes", arguments.passes,
@@ -120,8 +121,9 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
     options.schedule = parse_schedule(arguments.shared.schedule);
     if (options.spectral_bins > 0 && options.color == ColorMode::rgb)
         fail_input("--spectral-bins: goes with --color spectral or auto, not with rgb");
-    if (options.output.empty()) options.output = default_output(options.scene);
-    if (options.output.extension() != ".exr")
+    const bool is_part = passes.is_range && !options.checkpoint.empty();
+    if (options.output.empty() && !is_part) options.output = default_output(options.scene);
+    if (!options.output.empty() && options.output.extension() != ".exr")
         fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
                    options.output.string());
     options.command_line = std::move(command_line);

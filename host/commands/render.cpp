@@ -197,7 +197,6 @@ int render_command(const RenderOptions& given) {
     finish_progress(progress, status);
 
     Image image = renderer->develop(options.aovs);
-    const RelativeError error = renderer->relative_error();
     const std::string& unit = receiver.info->pixel_unit;  // empty: of a camera, which sees things
     const bool sees_things = options.aovs && unit.empty();
     if (sees_things) renderer->add_aovs(image, aov_samples);
@@ -216,9 +215,10 @@ int render_command(const RenderOptions& given) {
         {"device", device.description.name},
         {"driver", device.description.driver},
         {"version", std::string(ETENDUE_VERSION)}});
-    write_exr(options.output, image);
+    if (!options.output.empty()) write_exr(options.output, image);
     if (!options.stats.empty())
-        write_stats(options.stats, options, device, scene, *renderer, error, setup_seconds);
+        write_stats(options.stats, options, device, scene, *renderer, renderer->relative_error(),
+                    setup_seconds);
     if (renderer->counters().non_finite)
         show_note(progress, fmt::format("warning: {} samples were not finite and count as black",
                                         renderer->counters().non_finite));

@@ -89,7 +89,7 @@ TEST_CASE("an image of another size compiles nothing and shows what a renderer o
         RenderSettings settings = settings_for(scene, 0, Algorithm::bidirectional);
         settings.schedule = schedule;
         Renderer small(test_device(), scene, settings);
-        const std::vector<std::byte> small_film = film(small);
+        const std::vector<ExactSum> small_film = film(small);
         const size_t compiled = scene.kernels.size();
         settings.width = 50, settings.height = 20;
         settings.choice = small.choice();
