@@ -15,11 +15,15 @@ enum class ExitCode {
     interrupted = 130,  // stopped by the user; what was made so far is written
 };
 
-// `what()` is the whole line to print. For scenes it reads "FILE: JSON POINTER: what is wrong; what is
-// allowed".
+// What files say is repeated in messages: one line whatever they hold. Control characters, marks that turn
+// the direction of text, and bytes that are no UTF-8 become \x1b, byte by byte; a line feed becomes a space.
+std::string printable(const std::string& text);
+
+// `what()` is the whole line to print, printable. For scenes it reads "FILE: JSON POINTER: what is wrong; what
+// is allowed".
 class Error : public std::runtime_error {
   public:
-    Error(ExitCode code, const std::string& line) : std::runtime_error(line), code(code) {}
+    Error(ExitCode code, const std::string& line) : std::runtime_error(printable(line)), code(code) {}
     ExitCode code;
 };
 

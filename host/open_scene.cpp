@@ -10,6 +10,8 @@
 
 namespace etendue {
 
+ImportOptions import_options(const SceneChoice& choice) { return {choice.variant, choice.at}; }
+
 SceneOptions scene_options(const SceneChoice& choice) {
     SceneOptions options;
     options.shaders = choice.shaders;
@@ -18,6 +20,7 @@ SceneOptions scene_options(const SceneChoice& choice) {
     options.polarization = choice.polarization;
     options.spectral_image = choice.spectral_bins > 0;
     options.samples = choice.samples;
+    options.allow_class_files = choice.allow_class_files;
     options.cache_folder = default_cache_folder();
     return options;
 }
@@ -25,13 +28,15 @@ SceneOptions scene_options(const SceneChoice& choice) {
 OpenedScene open_scene(const SceneChoice& choice) {
     // Beside each other; what is wrong with the scene is told before what is wrong with the device.
     auto device = std::async(std::launch::async, [&] { return create_device({choice.device, false}); });
-    const SceneDescription description = import_gltf(choice.scene);
+    const SceneDescription description = import_gltf(choice.scene, import_options(choice));
     OpenedScene opened;
     opened.device = device.get();
     opened.scene = compile_scene(*opened.device, description, scene_options(choice));
     opened.files = files_of(description);
     opened.files.insert(opened.files.begin(), choice.scene);
     if (!choice.environment.empty()) opened.files.push_back(choice.environment);
+    opened.variants = description.variants;
+    opened.animation_seconds = description.animation_seconds;
     const DeviceDescription& used = opened.device->description;
     if (used.max_loop_turns > 0)
         opened.scene.warnings.push_back(

@@ -3,6 +3,7 @@
 #pragma once
 #include <memory>
 
+#include "host/gltf/gltf.h"
 #include "host/options.h"
 #include "host/scene/scene.h"
 
@@ -12,12 +13,15 @@ struct OpenedScene {
     std::unique_ptr<Device> device;
     Scene scene;
     std::vector<std::filesystem::path> files;  // that it was read from, the scene file first
+    std::vector<std::string> variants;  // of its materials
+    double animation_seconds = 0;       // 0 = it has none
 };
 
 // Fails with one line for what is wrong in the scene or its files, and where there is no such device.
 OpenedScene open_scene(const SceneChoice& choice);
 
-// The device aside: what the choice says of compiling.
+// The device aside: what the choice says of reading the file, and of compiling.
+ImportOptions import_options(const SceneChoice& choice);
 SceneOptions scene_options(const SceneChoice& choice);
 
 // The receiver of that name, else the first.

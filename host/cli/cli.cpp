@@ -60,6 +60,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     add_shared(*render, options, arguments.shared,
                {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
                 {"receiver", "Camera to render (default: the scene's first)"},
+                {"variant", "Of the scene's materials, as inspect lists them (default: none)"},
+                {"at", "Moment of the scene's animations (default: as its nodes stand)"},
                 {"environment", "Latitude-longitude image for the scene's surroundings"},
                 {"algorithm", "How light is traced (default: auto)"}});
     render
@@ -86,7 +88,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     render->add_option("--stats", options.stats, "Write counts, timings and the power balance there")
         ->option_text("FILE.json");
     add_shared(*render, options, arguments.shared,
-               {{"shaders", "Read the shaders from a folder (default: those built in)"}});
+               {{"shaders", "Read the shaders from a folder (default: those built in)"},
+                {"allow-class-files", "Run code that the scene brings along: only where you trust it"}});
     render->add_flag("--aovs", options.aovs, "Also write the layers albedo, normal, depth and error");
     render->add_flag("-q,--quiet", options.quiet, "No progress and no warnings");
     return render;
@@ -172,6 +175,8 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& argume
     add_shared(*bench, options, arguments.shared,
                {{"size", "As for render (default: the reference's)"},
                 {"receiver"},
+                {"variant"},
+                {"at"},
                 {"environment"},
                 {"vertex-memory"},
                 {"color"},
@@ -179,7 +184,8 @@ CLI::App* add_bench(CLI::App& app, BenchOptions& options, BenchArguments& argume
                 {"sampler"},
                 {"seed", "First seed (default: 0)"},
                 {"device"},
-                {"shaders"}});
+                {"shaders"},
+                {"allow-class-files"}});
     bench->add_flag("-q,--quiet", options.quiet, "No progress and no warnings");
     bench->get_option("SCENE")->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     return bench;
@@ -206,12 +212,15 @@ CLI::App* add_inspect(CLI::App& app, InspectOptions& options, SharedArguments& a
     add_shared(*inspect, options, arguments,
                {{"size"},
                 {"receiver", "Camera (default: the scene's first)"},
+                {"variant"},
+                {"at"},
                 {"environment"},
                 {"color"},
                 {"polarization"},
                 {"spectral-bins"},
                 {"device"},
-                {"shaders"}});
+                {"shaders"},
+                {"allow-class-files"}});
     inspect->add_flag("--json", options.json,
                       "Only what --algorithm auto chooses, with the words that make render do the same");
     return inspect;

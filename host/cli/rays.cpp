@@ -43,13 +43,16 @@ CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments
     add_shared(*rays, options, arguments.shared,
                {{"size", "Of the image, whose pixels the receiver's paths go through"},
                 {"receiver"},
+                {"variant"},
+                {"at"},
                 {"environment"},
                 {"color"},
                 {"polarization"},
                 {"sampler"},
                 {"seed"},
                 {"device"},
-                {"shaders"}});
+                {"shaders"},
+                {"allow-class-files"}});
     return rays;
 }
 

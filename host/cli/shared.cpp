@@ -15,6 +15,8 @@ void add_shared(CLI::App& command, SceneChoice& options, SharedArguments& argume
         };
         add("--size", arguments.size, "WxH");
         add("--receiver", options.receiver, "NAME");
+        add("--variant", options.variant, "NAME");
+        add("--at", arguments.at, "SECONDS");
         add("--environment", options.environment, "FILE.hdr|exr");
         add("--algorithm", arguments.algorithm, "auto|backward|forward|bidirectional");
         add("--vertex-memory", arguments.vertex_memory, "MIB");
@@ -26,11 +28,13 @@ void add_shared(CLI::App& command, SceneChoice& options, SharedArguments& argume
         add("--seed", arguments.seed, "N");
         add("--device", options.device, "NAME|INDEX");
         add("--shaders", options.shaders, "DIR");
+        if (name == "--allow-class-files") command.add_flag(name, options.allow_class_files, option.text);
     }
 }
 
 void finish_shared(SceneChoice& options, const SharedArguments& arguments) {
     if (arguments.size) options.size = parse_size(*arguments.size);
+    if (arguments.at) options.at = parse_moment(*arguments.at);
     if (arguments.spectral_bins)
         options.spectral_bins = uint32_t(parse_count(*arguments.spectral_bins, "--spectral-bins", 1, 470));
     options.color = parse_color(arguments.color);

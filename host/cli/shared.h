@@ -14,7 +14,7 @@ namespace etendue {
 
 // Arguments as text (host/cli/values.h).
 struct SharedArguments {
-    std::optional<std::string> size, spectral_bins;
+    std::optional<std::string> size, at, spectral_bins;
     std::string algorithm = "auto", vertex_memory = "256", color = "auto", polarization = "auto",
                 schedule = "auto", sampler = "sobol", seed = "0";
 };
@@ -24,11 +24,11 @@ struct SharedOption {
     const char* text = "As for render";
 };
 
-// Adds those of receiver, environment, device, shaders and the members of SharedArguments, in that order of
-// the help.
+// Adds those of variant, receiver, environment, device, shaders, class files and the members of
+// SharedArguments, in that order of the help.
 void add_shared(CLI::App& command, SceneChoice& options, SharedArguments& arguments,
                 std::initializer_list<SharedOption> wanted);
-// Size, bins, colours and samples; the rest is for commands to take.
+// Size, moment, bins, colours and samples; the rest is for commands to take.
 void finish_shared(SceneChoice& options, const SharedArguments& arguments);
 
 }  // namespace etendue

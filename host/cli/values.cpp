@@ -14,6 +14,14 @@ uint64_t parse_count(const std::string& text, const char* option, uint64_t least
     return value;
 }
 
+double parse_moment(const std::string& text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= 1e9))
+        fail_input("--at {}: must be a number from 0 to 1e9, in seconds", text);
+    return value;
+}
+
 double parse_positive(const std::string& text, const char* option, const char* unit) {
     double value = 0;
     auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);

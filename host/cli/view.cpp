@@ -11,7 +11,9 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options, ViewArguments& arguments
     view->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
     add_shared(*view, options, arguments.shared,
                {{"size", "Size of the window in pixels (default: 1280x720)"},
-                {"receiver", "Camera to begin with (default: the scene's first)"}});
+                {"receiver", "Camera to begin with (default: the scene's first)"},
+                {"variant", "Of the scene's materials, to begin with (default: none)"},
+                {"at", "Moment of the scene's animations, to begin with (default: as its nodes stand)"}});
     view->add_option("--passes", arguments.passes, "Rest after N passes (default: never)")->option_text("N");
     view->add_option("--exposure", arguments.exposure,
                      "Powers of two that the picture is brighter (default: metered)")
@@ -29,7 +31,8 @@ CLI::App* add_view(CLI::App& app, ViewOptions& options, ViewArguments& arguments
                 {"sampler"},
                 {"seed"},
                 {"device"},
-                {"shaders", "Read the shaders from a folder, again whenever they change"}});
+                {"shaders", "Read the shaders from a folder, again whenever they change"},
+                {"allow-class-files", "Run code that the scene brings along, without asking"}});
     view->add_option("--stats", options.stats, "Write times and memory there when the window is closed")
         ->option_text("FILE.json");
     return view;

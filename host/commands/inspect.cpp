@@ -1,6 +1,7 @@
 // etendue inspect: what a scene holds, what it makes the shaders compile, and why.
 #include <fmt/core.h>
 
+#include "host/error.h"
 #include "host/open_scene.h"
 #include "host/render/automatic.h"
 #include "host/render/renderer.h"
@@ -53,12 +54,15 @@ int inspect_command(const InspectOptions& options) {
     fmt::print("hierarchy  built in {:.3f} s, cost {:.1f}, depth {}\n", scene.bvh_seconds, scene.bvh_cost,
                scene.bvh_depth);
     fmt::print("materials  {}, textures {}\n", scene.materials, scene.textures);
+    if (!opened.variants.empty())
+        fmt::print("variants   {}\n", printable(fmt::format("{}", fmt::join(opened.variants, ", "))));
+    if (opened.animation_seconds > 0) fmt::print("animations {:.6g} s\n", opened.animation_seconds);
     fmt::print("lights     {} ({} at infinity), {:.6g} lm, selected by {}\n", scene.lights,
                scene.features.infinite_light_count, scene.power,
                scene.features.light_tree ? "a tree" : "a list");
     fmt::print("receivers ");
     for (const Receiver& receiver : scene.receivers)
-        fmt::print(" {}", receiver.name.empty() ? "(unnamed)" : receiver.name);
+        fmt::print(" {}", receiver.name.empty() ? "(unnamed)" : printable(receiver.name));
     fmt::print("\nclasses   ");
     for (const auto& [interface, classes] : scene.classes)
         for (const ClassInfo* info : classes)

@@ -7,8 +7,10 @@
 
 namespace etendue {
 
-SceneDescription import_gltf(std::span<const uint8_t> bytes, const std::filesystem::path& file) {
+SceneDescription import_gltf(std::span<const uint8_t> bytes, const std::filesystem::path& file,
+                             const ImportOptions& options) {
     GltfImport import;
+    import.options = options;
     import.scene.file = file;
     import.scene.folder = file.parent_path();
     import.file_name = file.string();
@@ -25,9 +27,9 @@ SceneDescription import_gltf(std::span<const uint8_t> bytes, const std::filesyst
     return std::move(import.scene);
 }
 
-SceneDescription import_gltf(const std::filesystem::path& file) {
+SceneDescription import_gltf(const std::filesystem::path& file, const ImportOptions& options) {
     std::vector<std::byte> bytes = read_whole_file(file);
-    return import_gltf(octets(bytes), file);
+    return import_gltf(octets(bytes), file, options);
 }
 
 }  // namespace etendue

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/scene/description.h"
+#include "host/gltf/gltf.h"
 #include "host/gltf/json.h"
 
 namespace etendue {
@@ -57,6 +58,7 @@ struct MeshRange {
 };
 
 struct GltfImport {
+    ImportOptions options;
     SceneDescription scene;
     std::string file_name;
     nlohmann::json document;

@@ -35,11 +35,8 @@ std::string range_text(double low, double high) {
 }  // namespace
 
 std::string message_at(const JsonAt& at, const std::string& message) {
-    std::string line =
-        fmt::format("{}: {}{}{}", *at.file, at.pointer, at.pointer.empty() ? "" : ": ", message);
-    for (char& c : line)  // names from the file may hold anything; a message is one line
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-    return line;
+    return printable(
+        fmt::format("{}: {}{}{}", *at.file, at.pointer, at.pointer.empty() ? "" : ": ", message));
 }
 
 JsonAt element(const JsonAt& array, size_t index) {

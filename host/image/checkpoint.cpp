@@ -6,12 +6,14 @@
 
 #include "host/error.h"
 #include "host/image/atomic_file.h"
+#include "host/shallow_json.h"
 
 namespace etendue {
 namespace {
 
 const char magic[8] = {'E', 'T', 'D', 'F', 'I', 'L', 'M', '\0'};
 const uint32_t format_version = 2;
+const int most_levels = 16;  // of the header
 const size_t prefix_size = sizeof magic + 2 * sizeof(uint32_t);
 
 template <class T>
@@ -113,7 +115,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
     Checkpoint checkpoint;
     try {
         const auto* first = reinterpret_cast<const char*>(text.data());
-        const nlohmann::json header = nlohmann::json::parse(first, first + text.size());
+        const auto parsed = parse_shallow_json({first, first + text.size()}, most_levels);
+        if (!parsed) fail_input("{}: damaged: the header cannot be read", name);
+        const nlohmann::json& header = *parsed;
         checkpoint.identity = header.at("identity");
         checkpoint.passes = passes_from_json(header.at("passes"));
         checkpoint.about = header.at("about");

@@ -11,12 +11,14 @@
 #include "host/error.h"
 #include "host/image/atomic_file.h"
 #include "host/measured/maps.h"
+#include "host/shallow_json.h"
 
 namespace etendue {
 namespace {
 
 using nlohmann::json;
 
+constexpr int most_levels = 16;         // of nested arrays; a table has five
 constexpr double most_reflected = 1.1;  // of the light: noise and coarse tables may give a little too much
 
 class TableReader {
@@ -24,8 +26,9 @@ class TableReader {
     explicit TableReader(const std::filesystem::path& path) : file_(path.string()) {
         const std::vector<std::byte> bytes = read_whole_file(path);
         const auto* text = reinterpret_cast<const char*>(bytes.data());
-        table_ = json::parse(text, text + bytes.size(), nullptr, false);
-        if (table_.is_discarded()) fail_input("{}: not a table of a measured surface: it is not JSON", file_);
+        const std::optional<json> table = parse_shallow_json({text, bytes.size()}, most_levels);
+        if (!table) fail_input("{}: not a table of a measured surface: it is not JSON", file_);
+        table_ = *table;
         if (!table_.is_object()) fail_input("{}: /: allowed: an object", file_);
         static const std::vector<std::string> names = {"description", "theta_i",    "theta_r",     "phi",
                                                        "wavelengths", "reflection", "transmission"};

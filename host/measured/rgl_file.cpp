@@ -96,7 +96,7 @@ MeasuredBsdf read_rgl_file(const std::filesystem::path& path) {
         phi.resize(1);
     } else {
         bsdf.ref.kind |= measured_anisotropic;
-        const double parts = 2 * pi / (phi.back() - phi.front());
+        const double parts = std::min(2 * pi / (phi.back() - phi.front()), 1e6);
         symmetry = uint32_t(std::lround(parts));
         if (std::abs(parts - symmetry) > 0.02 * parts || (symmetry != 1 && symmetry != 2 && symmetry != 4))
             fail_input("{}: field phi_i covers {:.4g} of a turn; allowed: the whole, a half or a quarter",

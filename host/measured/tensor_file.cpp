@@ -57,8 +57,7 @@ TensorFile::TensorFile(const std::filesystem::path& path)
     const uint32_t count = next<uint32_t>();
     for (uint32_t i = 0; i < count; ++i) {
         const std::string name = next_text(next<uint16_t>());
-        std::string shown;  // on one line, whatever the file calls it
-        for (const char c : name.substr(0, 64)) shown += c >= ' ' && c <= '~' ? c : '?';
+        const std::string shown = name.substr(0, 64);
         const size_t dimensions = next<uint16_t>();
         const uint8_t type = next<uint8_t>();
         const uint64_t place = next<uint64_t>();

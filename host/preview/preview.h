@@ -66,12 +66,16 @@ struct PreviewStatus {
     float scene_radius = 0;
     uint64_t triangles = 0, shapes = 0, instances = 0, lights = 0, materials = 0;
     std::vector<KernelReport> kernels;
+    std::vector<std::string> variants;  // of its materials
+    ImportOptions import;               // the variant and the moment at hand
+    double animation_seconds = 0;       // how long its animations last; 0 = it has none
     std::shared_ptr<const std::vector<LiveObject>> objects;  // null = none yet
     std::map<Interface, std::vector<std::string>> class_names;
     std::vector<std::string> placed_names;  // of shapes and nodes, in order, the first thousand
 
     std::string device, message;  // message: an error, or what takes long; empty = none
     bool is_error = false;
+    std::string question;  // whether the scene's class files may run: waits for PreviewSession::answer
     uint64_t passes = 0;
     uint32_t step = 1;
     bool at_rest = false;  // all passes that were asked for are done

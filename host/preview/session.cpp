@@ -17,7 +17,8 @@ constexpr std::chrono::milliseconds watch_interval(250);  // between two looks a
 PreviewSession::PreviewSession(const ViewOptions& options, std::function<void()> notify)
     : notify_(std::move(notify)),
       worker_(
-          options, [this] { return is_stale(); }, [this] { share(); }),
+          options, [this] { return is_stale(); }, [this] { share(); },
+          [this](const std::string& question) { return ask(question); }),
       thread_([this] { run(); }) {}
 
 PreviewSession::~PreviewSession() {
@@ -54,6 +55,27 @@ std::shared_ptr<const PreviewPicture> PreviewSession::picture() const {
 PreviewStatus PreviewSession::status() const {
     const std::lock_guard lock(mutex_);
     return status_;
+}
+
+// Waits for the answer. A window that closes says no.
+bool PreviewSession::ask(const std::string& question) {
+    std::unique_lock lock(mutex_);
+    answer_.reset();
+    status_.question = question;
+    lock.unlock();
+    notify_();
+    lock.lock();
+    wake_.wait(lock, [&] { return stop_ || answer_; });
+    status_.question.clear();
+    return answer_.value_or(false);
+}
+
+void PreviewSession::answer(bool yes) {
+    {
+        const std::lock_guard lock(mutex_);
+        answer_ = yes;
+    }
+    wake_.notify_one();
 }
 
 void PreviewSession::rethrow_failure() const {

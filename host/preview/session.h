@@ -24,6 +24,7 @@ class PreviewSession {
     void post(std::function<void(PreviewScene&)> task);
     std::shared_ptr<const PreviewPicture> picture() const;  // null = none yet
     PreviewStatus status() const;
+    void answer(bool yes);          // to the status' question
     void rethrow_failure() const;  // of a scene that did not open, or a device that failed
 
   private:
@@ -33,6 +34,7 @@ class PreviewSession {
     std::function<void(PreviewScene&)> next_task();
     void share();
     bool is_stale();
+    bool ask(const std::string& question);
     const std::function<void()> notify_;
     PreviewWorker worker_;  // the thread's own
     PreviewRequest at_work_;
@@ -45,6 +47,7 @@ class PreviewSession {
     std::shared_ptr<const PreviewPicture> picture_;
     PreviewStatus status_;
     std::exception_ptr failure_;
+    std::optional<bool> answer_;
     bool stop_ = false;
     std::thread thread_;
 };

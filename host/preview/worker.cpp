@@ -58,20 +58,37 @@ bool PreviewRequest::is_overtaken_by(const PreviewRequest& next) const {
 }
 
 PreviewWorker::PreviewWorker(const ViewOptions& options, std::function<bool()> interrupt,
-                             std::function<void()> changed)
+                             std::function<void()> changed, std::function<bool(const std::string&)> ask)
     : options_(options),
       interrupt_(std::move(interrupt)),
       changed_(std::move(changed)),
+      ask_(std::move(ask)),
       start_programs_(options) {}
 
 PreviewWorker::~PreviewWorker() = default;
+
+// `opening`, and once more where somebody allows it to run the class files that it refused.
+template <class Opening>
+auto PreviewWorker::ask_for_class_files(Opening opening) {
+    try {
+        return opening();
+    } catch (const ClassFilesRefused& refused) {
+        if (!ask_(refused.what())) throw;
+        options_.allow_class_files = true;
+        if (live_) live_->allow_class_files();
+        return opening();
+    }
+}
 
 void PreviewWorker::open() {
     if (start_programs_.needs_color_spectra()) color_spectra_ = std::jthread([] { color_spectra(); });
     device_ = create_device({options_.device, false});
     device_->programs->expect(*device_, start_programs_.read());
     status_.device = device_->description.name;
-    live_ = std::make_unique<LiveScene>(*device_, options_.scene, scene_options(options_));
+    live_ = ask_for_class_files([&] {
+        return std::make_unique<LiveScene>(*device_, options_.scene, scene_options(options_),
+                                           import_options(options_));
+    });
     scene_ = live_->scene();
     status_.first_receiver = uint32_t(&choose_receiver(*scene_, options_) - scene_->receivers.data());
     describe_scene();
@@ -104,6 +121,10 @@ void PreviewWorker::describe_scene() {
         else if (is_new)
             status.placement = receiver.world_from_local;
     }
+    status_.variants = live_->description().variants;
+    status_.import = live_->import();
+    options_.variant = status_.import.variant, options_.at = status_.import.seconds;  // for the pilot
+    status_.animation_seconds = live_->description().animation_seconds;
     status_.objects = std::make_shared<const std::vector<LiveObject>>(live_->objects());
     const std::set<std::string> names(scene.placed_names.begin(), scene.placed_names.end());
     status_.placed_names.clear();
@@ -321,7 +342,7 @@ bool PreviewWorker::reload_changed() {
     if (!watched_.changed()) return false;
     say("loading the scene again");
     try_change([&] {
-        std::shared_ptr<Scene> next = live_->reload();
+        std::shared_ptr<Scene> next = ask_for_class_files([&] { return live_->reload(); });
         choose_receiver(*next, options_);
         choice_.reset();
         if (pilot_) pilot_->give_up();

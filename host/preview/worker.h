@@ -18,8 +18,11 @@ namespace etendue {
 class PreviewWorker {
   public:
     // `interrupt` is asked within passes whether the picture at hand is still wanted. `changed`: status or
-    // picture are new, and worth showing before the slice ends.
-    PreviewWorker(const ViewOptions& options, std::function<bool()> interrupt, std::function<void()> changed);
+    // picture are new, and worth showing before the slice ends. `ask`: whether the class files of the scene
+    // may run; waits for the answer.
+    PreviewWorker(
+        const ViewOptions& options, std::function<bool()> interrupt, std::function<void()> changed,
+        std::function<bool(const std::string& question)> ask = [](auto&) { return false; });
     ~PreviewWorker();
 
     void open();  // device and scene; fails as `render` does
@@ -41,6 +44,8 @@ class PreviewWorker {
     const std::shared_ptr<const PreviewPicture>& picture() const { return picture_; }
 
   private:
+    template <class Opening>
+    auto ask_for_class_files(Opening opening);
     void watch_files();
     void describe_scene();
     void take_over(const std::shared_ptr<Scene>& next);
@@ -63,9 +68,10 @@ class PreviewWorker {
     void say(const std::string& message, bool is_error = false);
     uint32_t receiver_ref(const PreviewRequest& request) const;
 
-    const ViewOptions options_;
+    ViewOptions options_;
     const std::function<bool()> interrupt_;
     const std::function<void()> changed_;
+    const std::function<bool(const std::string&)> ask_;
     const StartPrograms start_programs_;
     std::jthread color_spectra_;  // computes them ahead
     bool has_started_ = false;    // there was a picture

@@ -102,7 +102,7 @@ struct TextureDescription {
 // A class file that the scene brings along: {"interface": "surface", "file": "velvet.glsl"}.
 struct ClassFileDescription {
     std::string interface;  // surface, geometry, light, receiver, medium, element
-    std::filesystem::path file;
+    std::filesystem::path file;  // as it can be opened
     std::string where;
 };
 
@@ -123,6 +123,8 @@ struct SceneDescription : SceneObjects {
     std::vector<ImageDescription> images;
     std::vector<TextureDescription> textures;
     std::vector<MeshDescription> meshes;
+    std::vector<std::string> variants;  // of its materials, by KHR_materials_variants
+    double animation_seconds = 0;       // the end of its last animation; 0 = it has none
     std::vector<std::string> warnings;  // one line each: what was read but is not modelled
 };
 

@@ -60,13 +60,6 @@ int source_ended(void* user) {
 
 const stbi_io_callbacks source_callbacks = {read_source, skip_source, source_ended};
 
-// stb_image's reasons may quote bytes of the file.
-std::string printable(std::string text) {
-    for (char& c : text)
-        if (c < 0x20 || c > 0x7e) c = '?';
-    return text;
-}
-
 // stb_image before 2.28 writes past its tables where a JPEG announces more than 256 Huffman codes in one of
 // them (ITU-T T.81, B.2.4.2: the 16 counts of codes by length). Walks the segments; what lies between is
 // coded data.
@@ -146,7 +139,7 @@ ImageDescription decode_image(std::span<const uint8_t> bytes, const std::string&
         std::unique_ptr<uint8_t, StbiFree> pixels(
             stbi_load_from_callbacks(&source_callbacks, &source, &width, &height, &channels, 4));
         if (source.ran_out) fail_input("{}: the image is truncated", where);
-        if (!pixels) fail_input("{}: the image is damaged: {}", where, printable(stbi_failure_reason()));
+        if (!pixels) fail_input("{}: the image is damaged: {}", where, stbi_failure_reason());
         image.rgba8.assign(pixels.get(), pixels.get() + 4 * size_t(width) * size_t(height));
     }
     check_finite(image, where);

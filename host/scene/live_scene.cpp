@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "host/error.h"
-#include "host/gltf/gltf.h"
 #include "host/scene/live_places.h"
 
 namespace etendue {
@@ -157,17 +156,19 @@ Interface interface_of(Part part) {
     }
 }
 
-LiveScene::LiveScene(Device& device, std::filesystem::path file, SceneOptions options)
+LiveScene::LiveScene(Device& device, std::filesystem::path file, SceneOptions options, ImportOptions import)
     : device_(&device), file_(std::move(file)), options_(std::move(options)) {
-    compile(import_gltf(file_), std::make_shared<SceneMemory>());
+    compile_file(import, std::make_shared<SceneMemory>());
     accept();
 }
 
-std::shared_ptr<Scene> LiveScene::compile(SceneDescription description, std::shared_ptr<SceneMemory> memory) {
+std::shared_ptr<Scene> LiveScene::compile_file(const ImportOptions& import,
+                                               std::shared_ptr<SceneMemory> memory) {
     candidate_.reset();
+    SceneDescription description = import_gltf(file_, import);
     auto next = std::make_shared<Scene>(compile_scene(*device_, description, options_, *memory));
     if (scene_ && same_receivers(description, description_)) keep_receivers(*next, scene_->receivers);
-    candidate_ = Candidate{next, {}, std::move(description), std::move(memory)};
+    candidate_ = Candidate{next, {}, std::move(description), import, std::move(memory)};
     return next;
 }
 
@@ -184,7 +185,7 @@ std::shared_ptr<Scene> LiveScene::compile(SceneObjects objects) {
     }
     std::swap(current, objects);
     keep_receivers(*next, scene_->receivers);
-    candidate_ = Candidate{next, std::move(objects), {}, memory_};
+    candidate_ = Candidate{next, std::move(objects), {}, import_, memory_};
     return next;
 }
 
@@ -213,6 +214,7 @@ void LiveScene::accept() {
         description_ = std::move(*candidate_->description);
     else
         static_cast<SceneObjects&>(description_) = std::move(candidate_->objects);
+    import_ = candidate_->import;
     memory_ = std::move(candidate_->memory);
     scene_ = std::move(candidate_->scene);
     candidate_.reset();
@@ -334,11 +336,14 @@ std::shared_ptr<Scene> LiveScene::place(const LiveObject& object, const glm::dma
     return compile(std::move(next));
 }
 
-std::shared_ptr<Scene> LiveScene::reload() {
+std::shared_ptr<Scene> LiveScene::reload() { return reload(import_); }
+
+std::shared_ptr<Scene> LiveScene::reload(const ImportOptions& import) {
+    if (import != import_) options_.varying.insert("places");  // what moves once will move again
     auto memory = std::make_shared<SceneMemory>();
     memory->registry = memory_->registry;
     memory->registry_key = memory_->registry_key;
-    return compile(import_gltf(file_), std::move(memory));
+    return compile_file(import, std::move(memory));
 }
 
 }  // namespace etendue

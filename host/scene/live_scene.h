@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "host/gltf/gltf.h"
 #include "host/scene/scene.h"
 #include "host/scene/scene_memory.h"
 
@@ -45,7 +46,7 @@ Interface interface_of(LiveObject::Part part);
 class LiveScene {
   public:
     // `device` must outlive it. Errors are those of import_gltf and compile_scene.
-    LiveScene(Device& device, std::filesystem::path file, SceneOptions options);
+    LiveScene(Device& device, std::filesystem::path file, SceneOptions options, ImportOptions import = {});
 
     const std::shared_ptr<Scene>& scene() const { return scene_; }
     const SceneDescription& description() const { return description_; }
@@ -64,6 +65,11 @@ class LiveScene {
     // moved stay where they are unless the file has changed them.
     std::shared_ptr<Scene> reload();
 
+    // Reads the scene file again, with another variant or at another moment. As reload() else.
+    std::shared_ptr<Scene> reload(const ImportOptions& import);
+    const ImportOptions& import() const { return import_; }
+    void allow_class_files() { options_.allow_class_files = true; }
+
     // After the device was lost: frees all that lies on it, asks for another, and compiles the same scene
     // there, with its edits and its receivers where they are. Nobody else may hold the scene.
     void move_to(const std::function<Device&()>& next_device);
@@ -76,15 +82,17 @@ class LiveScene {
     struct Candidate {
         std::shared_ptr<Scene> scene;
         SceneObjects objects;                         // of an edit, or
-        std::optional<SceneDescription> description;  // of a file
+        std::optional<SceneDescription> description;  // of a file, read so:
+        ImportOptions import;
         std::shared_ptr<SceneMemory> memory;
     };
     std::shared_ptr<Scene> compile(SceneObjects objects);
-    std::shared_ptr<Scene> compile(SceneDescription description, std::shared_ptr<SceneMemory> memory);
+    std::shared_ptr<Scene> compile_file(const ImportOptions& import, std::shared_ptr<SceneMemory> memory);
     static void keep_receivers(Scene& next, const std::vector<Receiver>& receivers);
     Device* device_;
     std::filesystem::path file_;
     SceneOptions options_;
+    ImportOptions import_;
     SceneDescription description_;
     std::shared_ptr<SceneMemory> memory_;
     std::shared_ptr<Scene> scene_;

@@ -8,6 +8,7 @@
 #include "host/error.h"
 #include "host/gpu/program_store.h"
 #include "host/scene/scene_compiler.h"
+#include "host/scene/scene_files.h"
 
 namespace etendue {
 
@@ -28,7 +29,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
                              parse_texture_info(info, content, in_.textures, message_place(in_, where)));
     };
     resolver_.environment_map = [this](const std::filesystem::path& file, const std::string&) {
-        return add_environment_map(file.is_absolute() ? file : in_.folder / file);
+        return add_environment_map(named_file(in_, file));
     };
     resolver_.grid = [this](const nlohmann::json& value, const std::string& where) {
         return add_grid(value, where);
@@ -88,12 +89,18 @@ void SceneCompiler::choose_polarization() {
 
 // Classes are reflected at first use, which takes a compilation.
 void SceneCompiler::find_registry() {
+    if (!in_.class_files.empty() && !options_.allow_class_files)
+        throw ClassFilesRefused(
+            ExitCode::bad_input,
+            fmt::format(
+                "{}: the class file {} is code that this scene brings along, which may do whatever you "
+                "may; give --allow-class-files where you trust it",
+                message_place(in_, in_.class_files[0].where), in_.class_files[0].file.string()));
     uint64_t key = out_.sources.hash();
     for (const ClassFileDescription& file : in_.class_files) {
-        const auto path = file.file.is_absolute() ? file.file : in_.folder / file.file;
-        std::ifstream stream(path, std::ios::binary);
+        std::ifstream stream(file.file, std::ios::binary);
         const std::string text = (std::ostringstream() << stream.rdbuf()).str();
-        key = hash_text(text, hash_text(path.string(), hash_text(file.interface, key)));
+        key = hash_text(text, hash_text(file.file.string(), hash_text(file.interface, key)));
     }
     if (memory_.registry && memory_.registry_key == key) {
         out_.registry = memory_.registry;
@@ -115,8 +122,7 @@ void SceneCompiler::add_class_files() {
                 "{}/interface: there is no interface {}; allowed: geometry, light, receiver, surface, "
                 "medium, element, phase",
                 message_place(in_, file.where), file.interface);
-        out_.registry->add_class_file(found->interface,
-                                      file.file.is_absolute() ? file.file : in_.folder / file.file);
+        out_.registry->add_class_file(found->interface, file.file);
     }
 }
 

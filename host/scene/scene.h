@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/error.h"
 #include "host/gpu/kernel.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
@@ -89,7 +90,15 @@ struct SceneOptions {
     // "places": where things stand, which kernels of small scenes otherwise hold as numbers.
     std::set<std::string> varying;
     SampleSequence samples = SampleSequence::sobol;
+    // A class file of a scene is code: it reaches all memory of the process where the device is a CPU.
+    bool allow_class_files = false;
     unsigned threads = 0;  // for building; 0 = all
+};
+
+// A scene that brings class files, which the options do not allow.
+class ClassFilesRefused : public Error {
+  public:
+    using Error::Error;
 };
 
 // Errors: fail_input for what is wrong in the scene, fail_device for what the device cannot hold. `memory`:

@@ -1,5 +1,7 @@
 #include "host/scene/scene_files.h"
 
+#include "host/error.h"
+
 namespace etendue {
 namespace {
 
@@ -17,11 +19,21 @@ void add_named(Paths& files, const nlohmann::json& value, const std::filesystem:
 
 }  // namespace
 
+std::filesystem::path named_file(const SceneDescription& scene, const std::filesystem::path& name) {
+    const std::filesystem::path file = scene.folder / name;
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (std::filesystem::is_other(status))
+        fail_input("{}: the scene names {}, a device or a pipe; must be a regular file", scene.file.string(),
+                   file.string());
+    return file;
+}
+
 Paths files_of(const SceneDescription& scene) {
     Paths files = scene.buffer_files;
     for (const ImageDescription& image : scene.images)
         if (!image.file.empty()) files.push_back(image.file);
-    for (const ClassFileDescription& file : scene.class_files) files.push_back(scene.folder / file.file);
+    for (const ClassFileDescription& file : scene.class_files) files.push_back(file.file);
     const auto add = [&](const nlohmann::json& value) { add_named(files, value, scene.folder); };
     for (const auto& [name, spectrum] : scene.spectra) add(spectrum);
     for (const MediumDescription& medium : scene.media) add(medium.medium.parameters);

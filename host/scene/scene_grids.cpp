@@ -6,6 +6,7 @@
 #include "host/error.h"
 #include "host/scene/image_file.h"
 #include "host/scene/scene_compiler.h"
+#include "host/scene/scene_files.h"
 
 namespace etendue {
 namespace {
@@ -40,6 +41,22 @@ glm::dmat4 placement(const json& object, const std::string& place) {
     return m;
 }
 
+// What a transform into the lattice can be made of, in 32-bit floats.
+void check_placement(const glm::dmat4& world_from_lattice, const std::string& place) {
+    double volume = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double spacing = glm::length(glm::dvec3(world_from_lattice[axis]));
+        if (!(spacing >= 1e-12 && spacing <= 1e12))
+            fail_input("{}: the points of the density are {:.3g} m apart; allowed: 1e-12 to 1e12 m", place,
+                       spacing);
+        volume *= spacing;
+    }
+    if (!(glm::length(glm::dvec3(world_from_lattice[3])) <= 1e15))
+        fail_input("{}: the density lies more than 1e15 m away", place);
+    if (!(std::abs(glm::determinant(glm::dmat3(world_from_lattice))) > 1e-6 * volume))
+        fail_input("{}: the transform of the density squashes space flat", place);
+}
+
 }  // namespace
 
 EnvironmentMapRef SceneCompiler::add_environment_map(const std::filesystem::path& file) {
@@ -65,8 +82,8 @@ uint32_t SceneCompiler::add_grid(const json& value, const std::string& where) {
         if (key != "name" && key != "grid" && key != "translation" && key != "rotation" && key != "scale")
             fail_input("{}/{}: unknown; allowed: name, grid, translation, rotation, scale", place, key);
     if (object.contains("grid") && !object["grid"].is_string()) fail_input("{}/grid: allowed: a name", place);
-    const std::filesystem::path file = object["name"].get<std::string>();
-    const auto key = std::pair(file.is_absolute() ? file : in_.folder / file, object.value("grid", ""));
+    const std::filesystem::path file = named_file(in_, object["name"].get<std::string>());
+    const auto key = std::pair(file, object.value("grid", ""));
     auto known = memory_.density_files.find(key);
     if (known == memory_.density_files.end()) {
         const DensityLattice lattice = read_density_file(key.first, key.second);
@@ -77,8 +94,7 @@ uint32_t SceneCompiler::add_grid(const json& value, const std::string& where) {
                 .first;
     }
     const glm::dmat4 world_from_lattice = placement(object, place) * known->second.world_from_lattice;
-    if (!(std::abs(glm::determinant(glm::dmat3(world_from_lattice))) > 0))
-        fail_input("{}: the transform of the density squashes space flat", place);
+    check_placement(world_from_lattice, place);
     grids_.push_back(known->second.record);
     grid_placements_.push_back(world_from_lattice);
     return uint32_t(grids_.size() - 1);

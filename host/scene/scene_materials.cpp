@@ -4,6 +4,7 @@
 #include "host/error.h"
 #include "host/lights/emission_texture.h"
 #include "host/scene/scene_compiler.h"
+#include "host/scene/scene_files.h"
 
 namespace etendue {
 
@@ -88,7 +89,7 @@ void SceneCompiler::add_materials() {
 }
 
 MeasuredRef SceneCompiler::add_measured(const std::filesystem::path& file) {
-    const std::filesystem::path path = file.is_absolute() ? file : in_.folder / file;
+    const std::filesystem::path path = named_file(in_, file);
     auto known = memory_.measured_files.find(path);
     if (known == memory_.measured_files.end()) {
         const MeasuredBsdf bsdf = read_measured_bsdf(path);

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "host/error.h"
+#include "host/scene/scene_files.h"
 #include "host/spectra/color.h"
 #include "host/spectra/library.h"
 
@@ -98,7 +99,7 @@ class Reader {
     // Lines of "wavelength, value"; a first line of names, empty lines and those after # are left out.
     SpectralTable from_file(const json& value) const {
         if (!value["file"].is_string()) fail_input("{}/file: allowed: the name of a CSV file", place_);
-        const std::filesystem::path path = scene_.folder / value["file"].get<std::string>();
+        const std::filesystem::path path = named_file(scene_, value["file"].get<std::string>());
         std::ifstream file(path);
         if (!file) fail_input("{}/file: cannot read {}", place_, path.string());
         std::vector<double> nm, values;
@@ -115,8 +116,8 @@ class Reader {
             if (*end_first && nm.empty()) continue;
             const bool has_second = bool(in >> second);
             const double v = std::strtod(second.c_str(), &end_second);
-            if (*end_first || !has_second || *end_second || in >> rest || !std::isfinite(w) ||
-                !std::isfinite(v))
+            if (*end_first || !has_second || *end_second || in >> rest || !(std::abs(w) < 1e30) ||
+                !(std::abs(v) < 1e30))
                 fail_input("{}:{}: allowed: lines of two numbers, wavelength in nm and value", path.string(),
                            count);
             nm.push_back(w), values.push_back(v);

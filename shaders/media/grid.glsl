@@ -51,18 +51,18 @@ FreePath grid_free_path(Grid r, MediumRay ray, Spectrum carried, vec2 u, uint se
     float top = max_component(mix(extinction, Spectrum(0), lessThanEqual(carried, Spectrum(0))));
     FreePath path = FreePath(false, ray.distance, Spectrum(1), 1.0);
     DensityWalk w = begin_walk(r.file, ray);
-    float column = 0.0;
+    float column = 0.0, most = walk_greatest_rate(w);
     // The digits that thin media need: numbers of the path are multiples of 2^-24.
     float depth = free_depth(u.y + next_number(seed) * (1.0 / 16777216.0)), choice = u.x;
     bool walking = w.t < w.end;
     do {  // no loop that lanes leave one by one (see features/light_selection.glsl)
         if (walking) {
-            float rate = top * w.here.greatest, there = rate * (w.leaves - w.t);
+            float rate = min(top * w.here.greatest, most), there = rate * (w.leaves - w.t);
             if (there > depth) {
                 float next = min(w.t + depth / rate, w.leaves);
                 column += w.here.mean * (next - w.t);
                 w.t = next;
-                float density = walk_density(w);
+                float density = min(walk_density(w), rate / top);
                 Spectrum share = carried * path.weight, null = max(rate - extinction * density, Spectrum(0));
                 float sum = dot(share, Spectrum(1)), real_sum = density * dot(share, extinction), null_sum = dot(share, null);
                 path.scatters = !(null_sum > 0.0) || choice * (real_sum + null_sum) < real_sum;
@@ -88,18 +88,19 @@ Passage grid_pass(Grid r, MediumRay ray, uint seed) {
     float top = max_component(extinction);
     DensityWalk w = begin_walk(r.file, ray);
     Spectrum left = Spectrum(1);  // of what the least densities leave
-    float column = 0.0, least_column = 0.0;
+    float column = 0.0, least_column = 0.0, most = walk_greatest_rate(w);
     float depth = free_depth(next_number(seed));
     bool walking = w.t < w.end;
     do {
         if (walking) {
-            float rate = top * (w.here.greatest - w.here.least), there = rate * (w.leaves - w.t);
+            float rate = min(top * (w.here.greatest - w.here.least), most), there = rate * (w.leaves - w.t);
             float next = there > depth ? min(w.t + depth / rate, w.leaves) : w.leaves;
             column += w.here.mean * (next - w.t);
             least_column += w.here.least * (next - w.t);
             if (there > depth) {
                 w.t = next;
-                left *= max(1.0 - extinction * ((walk_density(w) - w.here.least) / rate), Spectrum(0));
+                float density = min(walk_density(w) - w.here.least, rate / top);
+                left *= max(1.0 - extinction * (density / rate), Spectrum(0));
                 depth = free_depth(next_number(seed));
                 // Russian roulette, so that what is thick costs no more than what is not.
                 if (max_component(left) < 0.1) left *= next_number(seed) < 0.5 ? 2.0 : 0.0;

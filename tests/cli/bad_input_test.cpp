@@ -26,6 +26,20 @@ Words with(const Words& more) {
     return words;
 }
 
+// A surface class of the scene's own, and the scene that brings it.
+const char* const velvet = R"(
+struct Velvet { float tint; //: 0.5 in [0, 1]. Reflectance.
+};
+SurfacePair velvet_evaluate(Velvet r, SurfaceContext c, vec3 wo, vec3 wi) { return no_surface_pair(); }
+)";
+std::string with_class_file() {
+    std::string scene = small_scene();
+    const std::string before = R"("extensions": {"ETD_optics": {"environment")";
+    return scene.replace(scene.rfind(before), before.size(),
+                         R"("extensions": {"ETD_optics": {"class_files": [{"interface": "surface", "file":
+"evil.glsl"}], "environment")");
+}
+
 // out.exr is there before each of these runs, and must be untouched after it.
 void check(const std::vector<BadInput>& inputs) {
     for (const BadInput& bad : inputs) {
@@ -153,6 +167,27 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          [](Executable& p) {
              write_text(p.folder / "gold.pbsdf", std::string("tensor_file\0\1\0\0\0\0\0", 18));
          }},
+        {"a class file that nobody allowed",
+         render,
+         2,
+         {"s.gltf", "/extensions/ETD_optics/class_files/0", "evil.glsl", "--allow-class-files"},
+         with_class_file(),
+         [](Executable& p) { write_text(p.folder / "evil.glsl", velvet); }},
+        {"a device for a file",
+         render,
+         2,
+         {"s.gltf", "/dev/zero", "regular file"},
+         small_scene(R"({"class": "measured", "file": "/dev/zero"})")},
+        {"a name with control characters",
+         render,
+         2,
+         {"s.gltf", "\\x1b[2J"},
+         small_scene(R"({"class": "velvet\u001b[2J"})")},
+        {"no such variant",
+         with({"--variant", "midnight"}),
+         2,
+         {"s.gltf", "midnight", "none"}},
+        {"a moment before all others", with({"--at", "-1"}), 2, {"--at", "0 to 1e9"}},
         {"a number too large", render, 2, {"s.gltf"}, small_scene(R"({"class": "lambertian"})", "1e999")},
     });
 }

@@ -1,4 +1,4 @@
-// Fuzz target of the scene importer. With clang: -DETENDUE_LIBFUZZER -fsanitize=fuzzer,address,undefined.
+// Fuzz target of the scene importer and of the other readers of files. With clang: -DETENDUE_LIBFUZZER -fsanitize=fuzzer,address,undefined.
 // With other compilers, a program of its own that mutates a built-in scene and the files that it is given:
 //
 //     import_fuzz SECONDS [SEED [FILE…]]
@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "tests/fuzz/import_mutations.h"
+#include "tests/fuzz/reader_mutations.h"
 
 using namespace etendue;
 
@@ -43,9 +43,19 @@ int main(int argc, char** argv) {
     GltfBuilder scene = rich_scene();
     if (!try_import(scene.glb())) return std::fprintf(stderr, "the built-in scene is refused\n"), 1;
 
+    const TemporaryFolder folder;
+    const std::vector<FuzzedReader> readers = fuzzed_readers(folder);
     auto start = std::chrono::steady_clock::now();
     size_t runs = 0, scenes = 0;
     while (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < seconds) {
+        if (runs % 3 == 0) {
+            const FuzzedReader& reader = readers[below(random, readers.size())];
+            const std::string file = mutated_file(reader, random);
+            keep({file.begin(), file.end()});
+            scenes += try_read(reader, folder, file);
+            ++runs;
+            continue;
+        }
         bool from_file = !seeds.empty() && runs % 4 == 0;
         std::vector<uint8_t> bytes = from_file ? mutate_bytes(seeds[below(random, seeds.size())], random)
                                                : mutated_scene(scene, random);

@@ -169,3 +169,37 @@ TEST_CASE("Ctrl+S saves the image as EXR and PNG") {
     CHECK(find_channel(saved, "error.G") >= 0);
     CHECK(view.close().err == "");
 }
+
+TEST_CASE("a scene that brings class files is asked for, and shown only after a yes") {
+    std::string chalk = read_text(source_path("shaders/surfaces/lambertian.glsl"));
+    for (const auto& [from, to] : {std::pair{"Lambertian", "Chalk"}, {"lambertian", "chalk"}})
+        for (size_t at; (at = chalk.find(from)) != std::string::npos;)
+            chalk.replace(at, std::string(from).size(), to);
+    const TemporaryFolder folder;
+    write_text(folder / "chalk.glsl", chalk);
+    // A relative path leads there from wherever the program's folder is.
+    const std::string there =
+        (std::filesystem::path("../") / folder.path.filename() / "chalk.glsl").string();
+    const std::string scene =
+        replaced(replaced(two_balls, R"("class": "lambertian", "reflectance": 0.5)",
+                          R"("class": "chalk", "reflectance": 0.5)"),
+                 R"("ETD_optics": {"environment")",
+                 R"("ETD_optics": {"class_files": [{"interface": "surface", "file": ")" + there +
+                     R"("}], "environment")");
+    {
+        ViewedScene view(scene, words_with("320x240"));
+        sleep_seconds(2);
+        CHECK(view.x.screenshot().at(160, 5)[0] < 100);  // no picture
+        view.x.key("n");
+        const Run run = view.wait();
+        CHECK(run.code == 2);
+        CHECK_MESSAGE(run.err.find("--allow-class-files") != std::string::npos, run.err);
+        CHECK(run.error_lines() == 1);
+    }
+    ViewedScene view(scene, words_with("320x240"));
+    sleep_seconds(2);
+    view.x.key("y");
+    view.x.key("Tab");
+    CHECK(view.x.wait_until([](const Screenshot& shot) { return shot.at(160, 5)[0] > 200; }));
+    CHECK(view.close().err == "");
+}

@@ -242,3 +242,30 @@ TEST_CASE("clouds: by schedule the same film bit for bit") {
     const FilmState fused = render_film(scene, plan, Schedule::fused, {4});
     CHECK(fused.pixels == render_film(scene, plan, Schedule::wavefront, {1, 3}).pixels);
 }
+
+TEST_CASE("densities out of all proportion are opaque, and take no longer than others") {
+    // Half of the points are empty: there light would collide with nothing 10^30 times. What is thicker than can be
+    // resolved is all the same.
+    TemporaryFolder folder;
+    const auto image = [&](float density, double reach) {
+        DensityField(glm::uvec3(9), glm::dvec3(-reach), glm::dvec3(reach), [=](glm::dvec3 p) {
+            return p.x < 0 ? 0.0f : density;
+        }).write(folder / "wall.nrrd");
+        SceneBuilder s;
+        s.medium("wall", {{"class", "grid"}, {"file", "wall.nrrd"}, {"absorption", 1}, {"scattering", 1}});
+        add_box(s, {3, 3, 3}, filled(s, boundary, "wall"), false, at(0, 0, 0));
+        s.orthographic(1.5, at(0, 0, 3));
+        s.environment(1);
+        RenderPlan plan;
+        plan.width = plan.height = 16, plan.passes = 16, plan.seeds = 1;
+        return render_estimates(s.import(folder / "scene.gltf"), plan);
+    };
+    const Estimates thick = image(1e12f, 1), thicker = image(1e30f, 1), large = image(1e30f, 1e6);
+    CHECK(thick.images[0] == thicker.images[0]);
+    CHECK(window_mean(thick, {0, 0, 5, 16}).mean == 1);  // nothing is there
+    const double albedo = window_mean(thick, {9, 1, 6, 14}).mean;
+    CHECK(albedo > 0.05);
+    CHECK(albedo < 0.5);
+    CHECK(window_mean(large).mean < 1);
+    CHECK(large.counters.non_finite == 0);
+}

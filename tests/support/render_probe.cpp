@@ -184,6 +184,7 @@ SceneOptions test_options() {
     SceneOptions options;
     options.shaders = source_path("shaders");
     options.cache_folder = default_cache_folder();
+    options.allow_class_files = true;
     return options;
 }
 

@@ -74,6 +74,8 @@ void Input::on_key(int key, int action, int mods) {
         if (key - GLFW_KEY_1 < receivers) choose_receiver(s, uint32_t(key - GLFW_KEY_1));
         return;
     }
+    if (!s.status.question.empty() && (key == GLFW_KEY_Y || key == GLFW_KEY_N))
+        return s.session.answer(key == GLFW_KEY_Y);
     const bool flies = drag_ == Drag::look;
     switch (key) {
         case GLFW_KEY_PAGE_UP:

@@ -42,6 +42,19 @@ void draw_messages(ViewState& state) {
         draw_line("notice", bottom, state.notice, {1, 1, 1, 1});
 }
 
+void draw_question(ViewState& state) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
+    ImGui::Begin("Class files", nullptr, fixed);
+    ImGui::PushTextWrapPos(0.8f * size.x);
+    ImGui::TextUnformatted(state.status.question.c_str());
+    ImGui::PopTextWrapPos();
+    if (ImGui::Button("Run them (Y)")) state.session.answer(true);
+    ImGui::SameLine();
+    if (ImGui::Button("Do not (N)")) state.session.answer(false);
+    ImGui::End();
+}
+
 void draw_help(ViewState& state) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -73,6 +86,7 @@ void draw_panels(ViewState& state) {
         ImGui::PushItemWidth(0.55f * panel_width * scale);
         draw_statistics_panel(state);
         draw_film_panel(state);
+        draw_scene_panel(state);
         draw_camera_panel(state);
         draw_probe_panel(state);
         draw_rays_panel(state);
@@ -92,6 +106,7 @@ void draw_panels(ViewState& state) {
                              state.picture->layer == Layer::error ? "error / value" : "cd/m²");
     }
     draw_messages(state);
+    if (!state.status.question.empty()) draw_question(state);
 }
 
 }  // namespace etendue

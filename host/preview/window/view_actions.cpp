@@ -6,6 +6,7 @@
 
 #include "host/error.h"
 #include "host/image/exr.h"
+#include "host/image/outputs.h"
 #include "host/image/png.h"
 #include "host/open_scene.h"
 #include "host/preview/pixel_probe.h"
@@ -130,8 +131,10 @@ void save_image(ViewState& state) {
         image.attributes["version"] = std::string(ETENDUE_VERSION);
         std::filesystem::path png = path;
         png.replace_extension(".png");
-        write_exr(path, image);
-        write_png(png, image, float(exposure));
+        Outputs outputs;
+        outputs.write([&] { write_exr(path, image); });
+        outputs.write([&] { write_png(png, image, float(exposure)); });
+        outputs.finish();
         const std::lock_guard lock(results->mutex);
         results->notice = fmt::format("saved {} and {}", path.string(), png.string());
     });
@@ -168,6 +171,14 @@ void edit_object(ViewState& state, const ObjectEdit& edit) {
         else
             scene.next = scene.live.set_parameter(edit.object, edit.parameter, edit.value);
     });
+}
+
+void reload_scene(ViewState& state) {
+    state.reload_is_wanted = state.reload_is_made;  // once more after the one at work
+    if (state.reload_is_made) return;
+    state.reload_is_made = true;
+    state.session.post([done = done_with(state, &TaskResults::reloaded), import = state.import](
+                           PreviewScene& scene) { scene.next = scene.live.reload(import); });
 }
 
 void trace_paths(ViewState& state) {
@@ -230,7 +241,7 @@ bool receive_results(ViewState& state) {
         const std::lock_guard lock(state.results->mutex);
         TaskResults& results = *state.results;
         news = results.notice || results.clipboard || results.focus || results.reading || results.paths ||
-               results.edited || results.traced || results.read;
+               results.edited || results.traced || results.read || results.reloaded;
         notice = std::exchange(results.notice, {});
         clipboard = std::exchange(results.clipboard, {});
         point = std::exchange(results.focus, {});
@@ -239,8 +250,10 @@ bool receive_results(ViewState& state) {
         if (std::exchange(results.read, false)) state.reading_is_made = false;
         if (std::exchange(results.edited, false)) state.edit_is_made = false;
         if (std::exchange(results.traced, false)) state.rays.is_made = false;
+        if (std::exchange(results.reloaded, false)) state.reload_is_made = false;
     }
     if (state.rays.wanted && !state.rays.is_made) trace_paths(state);
+    if (state.reload_is_wanted && !state.reload_is_made) reload_scene(state);
     if (state.edit && !state.edit_is_made) edit_object(state, *std::exchange(state.edit, {}));
     if (notice) note(state, *notice);
     if (clipboard) glfwSetClipboardString(state.window, clipboard->c_str());
@@ -256,7 +269,7 @@ bool receive_results(ViewState& state) {
 bool receive_news(ViewState& state) {
     state.session.rethrow_failure();
     const uint64_t scene_before = state.status.scene, passes_before = state.status.passes;
-    const std::string message_before = state.status.message;
+    const std::string message_before = state.status.message, question_before = state.status.question;
     const auto picture_before = state.picture;
     state.status = state.session.status();
     state.picture = state.session.picture();
@@ -270,12 +283,14 @@ bool receive_news(ViewState& state) {
         if (const auto exposure = state.metering.look(*state.picture, state.view.exposure))
             state.view.exposure = *exposure;
     const bool results = receive_results(state);
+    if (!state.reload_is_made && !state.reload_is_wanted) state.import = state.status.import;
     if (state.objects_from != state.status.objects && !state.edit && !state.edit_is_made) {
         state.objects_from = state.status.objects;
         if (state.objects_from) state.objects = *state.objects_from;
     }
     return results || state.picture != picture_before || state.status.scene != scene_before ||
-           state.status.passes != passes_before || state.status.message != message_before;
+           state.status.passes != passes_before || state.status.message != message_before ||
+           state.status.question != question_before;
 }
 
 }  // namespace etendue

@@ -22,8 +22,8 @@ struct TaskResults {
     std::optional<glm::dvec3> focus;  // point to turn around
     std::optional<PixelReading> reading;
     std::optional<std::vector<RecordedPath>> paths;
-    // An edit, a reading, recorded paths: the task has ended, in whatever way.
-    bool edited = false, read = false, traced = false;
+    // An edit, a reading, recorded paths, a scene read again: the task has ended, in whatever way.
+    bool edited = false, read = false, traced = false, reloaded = false;
 };
 
 // An edit of an object of the scene: of a parameter, or of its class.
@@ -72,6 +72,9 @@ struct ViewState {
     std::shared_ptr<const std::vector<LiveObject>> objects_from;
     std::optional<ObjectEdit> edit;  // that waits for the one before it
     bool edit_is_made = false;       // one is at work
+    // How the scene file is to be read: as its panel shows it, and whether one is at work.
+    ImportOptions import;
+    bool reload_is_wanted = false, reload_is_made = false;
     std::optional<PixelReading> reading;
     glm::uvec2 reading_pixel{~0u};  // that was asked for last
     PreviewRequest reading_of;
@@ -94,6 +97,7 @@ void choose_receiver(ViewState& state, uint32_t index);
 void meter_exposure(ViewState& state);
 void focus_at_pointer(ViewState& state);
 void edit_object(ViewState& state, const ObjectEdit& edit);
+void reload_scene(ViewState& state);  // as `import` says
 void read_pixel_at_pointer(ViewState& state);
 void trace_paths(ViewState& state);  // for the ray viewer
 void copy_camera(ViewState& state);  // to the clipboard, as glTF

@@ -175,7 +175,7 @@ void show_until_closed(ViewState& state, Input& input, Screen& screen) {
     double last_frame = 0;
     while (!glfwWindowShouldClose(state.window) && !interrupted()) {
         // Frames without a picture would only delay the first one.
-        const bool waits = last_frame > 0 && !state.picture;
+        const bool waits = last_frame > 0 && !state.picture && state.status.question.empty();
         const double now = glfwGetTime(), next = last_frame + (waits ? idle_seconds : frame_seconds);
         if (frames_left > 0 && next > now)
             glfwWaitEventsTimeout(next - now);

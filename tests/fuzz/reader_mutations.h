@@ -1,0 +1,144 @@
+// Damaged files for every reader but the importer's own (import_mutations.h): a sound file of each kind, and
+// what must hold for whatever comes of its mutations.
+#pragma once
+#include <functional>
+
+#include "host/image/checkpoint.h"
+#include "host/measured/measured_bsdf.h"
+#include "host/scene/density_bricks.h"
+#include "host/scene/spectral_value.h"
+#include "tests/fuzz/import_mutations.h"
+#include "tests/support/bsdf_files.h"
+#include "tests/support/density_field.h"
+#include "tests/support/temporary_folder.h"
+
+namespace etendue {
+
+struct FuzzedReader {
+    std::string file;                                        // its name; the extension may tell the kind
+    std::string sound;                                       // bytes of a file that is read
+    std::function<void(const std::filesystem::path&)> read;  // throws where a promise is broken
+    std::function<void(std::string&)> seal = [](std::string&) {};  // makes mutated bytes pass a checksum
+};
+
+inline void require_finite(std::span<const float> values, const char* what) {
+    for (const float v : values)
+        if (!std::isfinite(v)) throw std::logic_error(what);
+}
+
+inline void check_densities(const std::filesystem::path& file) {
+    const DensityLattice lattice = read_density_file(file, "");
+    DensityBricks bricks;
+    add_bricks(bricks, lattice, file.string());
+    require_finite(bricks.values, "densities are finite");
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 4; ++r)
+            if (!std::isfinite(lattice.world_from_lattice[c][r]))
+                throw std::logic_error("a placement is finite");
+}
+
+inline void check_measured(const std::filesystem::path& file) {
+    const MeasuredBsdf bsdf = read_measured_bsdf(file);
+    require_finite({&bsdf.points.front().x, 2 * bsdf.points.size()}, "points are finite");
+    require_finite(bsdf.colors, "colours are finite");
+    require_finite(bsdf.spectra, "spectra are finite");
+}
+
+inline void check_spectrum(const std::filesystem::path& file) {
+    SceneDescription scene;
+    scene.file = file;
+    scene.folder = file.parent_path();
+    const SpectralValue value =
+        spectral_value({{"file", file.filename().string()}}, scene, "/x", SpectralKind::factor);
+    require_finite({&value.rgb.x, 3}, "colours of spectra are finite");
+    if (value.table) require_finite(value.table->values, "spectra are finite");
+}
+
+inline void check_checkpoint(const std::filesystem::path& file) {
+    const Checkpoint checkpoint = read_checkpoint(file, {{"scene", "s"}, {"seed", 7}});
+    if (checkpoint.arrays.size() > 1000) throw std::logic_error("a checkpoint has its few arrays");
+}
+
+inline void check_image(const std::filesystem::path& file) {
+    const ImageDescription image = read_image_file(file);
+    if (image.rgba32f.size() != 4 * size_t(image.width) * image.height)
+        throw std::logic_error("an image has its texels");
+    require_finite(image.rgba32f, "texels are finite");
+}
+
+// An image of 16 x 3 texels, rows by components.
+inline std::string radiance_bytes() {
+    std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 3 +X 16\n";
+    for (int row = 0; row < 3; ++row) {
+        bytes += std::string("\2\2\0\20", 4);
+        for (int component = 0; component < 4; ++component)
+            bytes += std::string("\210\200\4abcd\204\201", 9);  // 8 alike, 4 different, 4 alike
+    }
+    return bytes;
+}
+
+inline std::string checkpoint_bytes(const TemporaryFolder& folder) {
+    Checkpoint checkpoint;
+    checkpoint.identity = {{"scene", "s"}, {"seed", 7}};
+    checkpoint.passes = 3;
+    checkpoint.counters = {{"rays", 5}, {"choice", {{"reason", "because"}}}};
+    checkpoint.arrays = {{"film", std::vector<std::byte>(40, std::byte{1})}, {"bins", {}}};
+    write_checkpoint(folder / "sound", checkpoint);
+    return read_text(folder / "sound");
+}
+
+inline void seal_checkpoint(std::string& bytes) {
+    if (bytes.size() < sizeof(uint64_t)) return;
+    const size_t body = bytes.size() - sizeof(uint64_t);
+    const uint64_t hash = hash_bytes(std::as_bytes(std::span(bytes.data(), body)));
+    std::memcpy(bytes.data() + body, &hash, sizeof hash);
+}
+
+inline std::vector<FuzzedReader> fuzzed_readers(const TemporaryFolder& folder) {
+    const DensityField field({6, 5, 4}, {-1, 0, 2}, {1, 3, 4}, [](glm::dvec3 p) { return 2 + p.x; });
+    field.write(folder / "sound");
+    const std::string floats = read_text(folder / "sound");
+    const std::string bytes =
+        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 2 2\nencoding: raw\nspacings: 0.5 1 2\n\nabcdefghijkl";
+    RglResolution small;
+    small.theta_i = {0, 0.8, 1.5};
+    small.points = small.value_points = 4;
+    const GgxMetal metal{0.4, 0.4, [](double, size_t) { return 0.5; }};
+    const std::string table = R"({"theta_i": [0, 60], "theta_r": [0, 45, 90], "phi": [0, 180],
+"wavelengths": [400, 700], "reflection": [[[[0.1, 0.2], [0.1, 0.2]], [[0.1, 0.2], [0.1, 0.2]], [[0, 0], [0, 0]]],
+[[[0.1, 0.2], [0.1, 0.2]], [[0.1, 0.2], [0.1, 0.3]], [[0, 0], [0, 0]]]]})";
+    return {{"floats.nrrd", floats, check_densities},
+            {"bytes.nrrd", bytes, check_densities},
+            {"colors.bsdf", tensor_file_bytes(rgl_fields(metal, {}, small)), check_measured},
+            {"spectra.bsdf", tensor_file_bytes(rgl_fields(metal, {400, 550, 700}, small)), check_measured},
+            {"table.json", table, check_measured},
+            {"spectrum.csv", "nm,value\n# measured\n400, 0.5\n500;0.25\n\n600\t1e-1\n", check_spectrum},
+            {"sky.hdr", radiance_bytes(), check_image},
+            {"state", checkpoint_bytes(folder), check_checkpoint, seal_checkpoint}};
+}
+
+// Whether the file was read. Anything but a one-line, printable input error that names the file passes
+// through.
+inline bool try_read(const FuzzedReader& reader, const TemporaryFolder& folder, std::string bytes) {
+    reader.seal(bytes);
+    const std::filesystem::path file = folder / reader.file;
+    write_text(file, bytes);
+    try {
+        reader.read(file);
+        return true;
+    } catch (const Error& e) {
+        if (e.code != ExitCode::bad_input) throw;
+        const std::string line = e.what();
+        if (line != printable(line)) throw std::logic_error("an error is not printable: " + line);
+        if (line.find(reader.file) == std::string::npos)
+            throw std::logic_error("an error does not name the file: " + line);
+        return false;
+    }
+}
+
+inline std::string mutated_file(const FuzzedReader& reader, Random& random) {
+    const std::vector<uint8_t> bytes = mutate_bytes({reader.sound.begin(), reader.sound.end()}, random);
+    return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace etendue
