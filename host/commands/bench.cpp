@@ -5,9 +5,9 @@
 #include "host/bench/measure.h"
 #include "host/bench/report.h"
 #include "host/error.h"
-#include "host/gltf/gltf.h"
 #include "host/image/atomic_file.h"
 #include "host/image/exr.h"
+#include "host/image/outputs.h"
 #include "host/image/png.h"
 #include "host/interrupt.h"
 #include "host/open_scene.h"
@@ -94,7 +94,7 @@ std::vector<Contestant> make_contestants(const BenchOptions& options, OpenedScen
 }
 
 // `options` with one scene. What is found goes into `results` as it is found.
-void bench_scene(const BenchOptions& options, BenchResults& results, Progress& progress) {
+void bench_scene(const BenchOptions& options, BenchResults& results, Progress& progress, Outputs& outputs) {
     const fs::path& folder = options.output;
     OpenedScene opened = open_scene(options);
     const Receiver& receiver = choose_receiver(opened.scene, options);
@@ -129,7 +129,7 @@ void bench_scene(const BenchOptions& options, BenchResults& results, Progress& p
                         [&](BenchPoint point) {
                             point.scene = scene.name;
                             results.points.push_back(std::move(point));
-                            write_results(folder, results);
+                            outputs.write([&] { write_results(folder, results); });
                         });
     for (const BenchCurve& curve : curves(results, scene)) {
         const double factor = 1 + curve.bias.value;
@@ -139,7 +139,7 @@ void bench_scene(const BenchOptions& options, BenchResults& results, Progress& p
                         "this renderer's, where white of 1 cd/m² is 1?",
                         curve.algorithm, factor));
         show_note(progress, results.scenes.back().notes.back());
-        write_results(folder, results);
+        outputs.write([&] { write_results(folder, results); });
     }
 
     // All pictures of a scene are as bright as its reference: of a mean that shows.
@@ -147,18 +147,22 @@ void bench_scene(const BenchOptions& options, BenchResults& results, Progress& p
     double mean = 0;
     for (float value : values) mean += std::isfinite(value) ? value / double(values.size()) : 0.0;
     const float exposure = mean > 0 ? float(std::log2(0.25 / mean)) : 0;
-    write_exr(folder / (scene.name + ".reference.exr"), reference->image);
-    write_png(folder / (scene.name + ".reference.png"), reference->image, exposure);
+    outputs.write([&] { write_exr(folder / (scene.name + ".reference.exr"), reference->image); });
+    outputs.write([&] { write_png(folder / (scene.name + ".reference.png"), reference->image, exposure); });
     for (const Contestant& c : contestants)
         if (c.longest > 0)
-            write_png(folder / fmt::format("{}.{}.png", scene.name, algorithm_name(c.algorithm)), c.image,
-                      exposure);
+            outputs.write([&] {
+                write_png(folder / fmt::format("{}.{}.png", scene.name, algorithm_name(c.algorithm)), c.image,
+                          exposure);
+            });
 }
 
-void report(const BenchOptions& options, const BenchResults& results, Progress& progress) {
-    if (const std::string failure = draw_plots(options.output, results); !failure.empty())
-        show_note(progress, failure);
-    write_page(options.output, results);
+void report(const BenchOptions& options, const BenchResults& results, Progress& progress, Outputs& outputs) {
+    outputs.write([&] {
+        if (const std::string failure = draw_plots(options.output, results); !failure.empty())
+            show_note(progress, failure);
+    });
+    outputs.write([&] { write_page(options.output, results); });
     for (const BenchScene& scene : results.scenes)
         fmt::print("{}\n{}\n", scene.name, as_text(summary_table(curves(results, scene))));
 }
@@ -168,11 +172,14 @@ void report(const BenchOptions& options, const BenchResults& results, Progress& 
 int bench_command(const BenchOptions& options) {
     Progress progress;
     progress.style = progress_style(options.quiet);
+    Outputs outputs;
     if (options.scenes.empty()) {
-        report(options, read_results(options.output), progress);
+        report(options, read_results(options.output), progress, outputs);
+        outputs.finish();
         return int(ExitCode::done);
     }
-    for (const fs::path& scene : options.scenes) import_gltf(scene);  // what is wrong shows before the work
+    for (const fs::path& scene : options.scenes)
+        import_gltf(scene, import_options(options));  // what is wrong shows before the work
     prepare_folder(options.output);
     catch_interrupts();
     BenchResults results;
@@ -180,9 +187,10 @@ int bench_command(const BenchOptions& options) {
         if (interrupted()) break;
         BenchOptions one = options;
         one.scene = scene;
-        bench_scene(one, results, progress);
+        bench_scene(one, results, progress, outputs);
     }
-    if (!results.points.empty()) report(options, results, progress);
+    if (!results.points.empty()) report(options, results, progress, outputs);
+    outputs.finish();
     return int(interrupted() ? ExitCode::interrupted : ExitCode::done);
 }
 

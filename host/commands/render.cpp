@@ -11,6 +11,7 @@
 #include "host/image/atomic_file.h"
 #include "host/image/exr.h"
 #include "host/image/image.h"
+#include "host/image/outputs.h"
 #include "host/image/polarization.h"
 #include "host/interrupt.h"
 #include "host/progress.h"
@@ -189,18 +190,23 @@ int render_command(const RenderOptions& given) {
         }
         done = has_all() || (options.seconds && status.seconds >= *options.seconds) || accurate;
         if (!chooses.is_open() && status.seconds >= next_checkpoint) {
-            checkpoints.save(*renderer);
+            try {
+                checkpoints.save(*renderer);
+            } catch (const Error& error) {  // the next one may be written, and the image in any case
+                if (error.code != ExitCode::bad_input) throw;
+                show_note(progress, std::string("warning: ") + error.what());
+            }
             next_checkpoint = seconds_since(render_start) + checkpoint_seconds;
         }
         show_progress(progress, status);
     }
     finish_progress(progress, status);
 
+    Outputs outputs;
     Image image = renderer->develop(options.aovs);
     const std::string& unit = receiver.info->pixel_unit;  // empty: of a camera, which sees things
     const bool sees_things = options.aovs && unit.empty();
     if (sees_things) renderer->add_aovs(image, aov_samples);
-    checkpoints.save(*renderer, sees_things ? &image : nullptr);
     image.attributes["pixelUnit"] = unit.empty() ? std::string("cd/m²") : unit;
     if (options.aovs && has_stokes(image)) add_polarization(image);
     renderer->add_spectra(image);
@@ -215,16 +221,20 @@ int render_command(const RenderOptions& given) {
         {"device", device.description.name},
         {"driver", device.description.driver},
         {"version", std::string(ETENDUE_VERSION)}});
-    if (!options.output.empty()) write_exr(options.output, image);
+    if (!options.output.empty()) outputs.write([&] { write_exr(options.output, image); });
     if (!options.stats.empty())
-        write_stats(options.stats, options, device, scene, *renderer, renderer->relative_error(),
-                    setup_seconds);
+        outputs.write([&] {
+            write_stats(options.stats, options, device, scene, *renderer, renderer->relative_error(),
+                        setup_seconds);
+        });
+    outputs.write([&] { checkpoints.save(*renderer, sees_things ? &image : nullptr); });
     if (renderer->counters().non_finite)
         show_note(progress, fmt::format("warning: {} samples were not finite and count as black",
                                         renderer->counters().non_finite));
     if (renderer->counters().depth_limit)
         show_note(progress, fmt::format("warning: {} paths were cut at the depth limit",
                                         renderer->counters().depth_limit));
+    outputs.finish();
     return int(interrupted() && !done ? ExitCode::interrupted : ExitCode::done);
 }
 

@@ -3,6 +3,7 @@
 
 #include "host/image/exr.h"
 #include "tests/cli/program.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -209,4 +210,45 @@ TEST_CASE("a spectral image has a channel a bin, and is resumed with them") {
     REQUIRE(program.run(with({"--passes", "12", "--spectral-bins", "4", "--resume", "state"})).code == 0);
     CHECK(read_exr(program.folder / "out.exr").values == whole.values);
     CHECK(program.run(with({"--passes", "12", "--color", "spectral", "--resume", "state"})).code == 2);
+}
+
+TEST_CASE("a scene's own class files run where they are allowed") {
+    Executable program;
+    std::string chalk = read_text(source_path("shaders/surfaces/lambertian.glsl"));
+    for (const auto& [from, to] : {std::pair{"Lambertian", "Chalk"}, {"lambertian", "chalk"}})
+        for (size_t at; (at = chalk.find(from)) != std::string::npos;)
+            chalk.replace(at, std::string(from).size(), to);
+    std::filesystem::create_directory(program.folder / "scene");
+    write_text(program.folder / "scene/chalk.glsl", chalk);
+    nlohmann::json scene = nlohmann::json::parse(small_scene(R"({"class": "chalk"})"));
+    scene["extensions"]["ETD_optics"]["class_files"] = {{{"interface", "surface"}, {"file", "chalk.glsl"}}};
+    write_text(program.folder / "scene/s.gltf", scene.dump());
+    const Run run = program.run({"render", "scene/s.gltf", "-o", "out.exr", "--passes", "1", "--size", "4x4", "-q",
+                                 "--allow-class-files"});
+    CHECK_MESSAGE(run.code == 0, run.err);
+    CHECK(std::filesystem::exists(program.folder / "out.exr"));
+}
+
+TEST_CASE("an output that cannot be written costs no other one") {
+    Executable program;
+    write_text(program.folder / "s.gltf", small_scene());
+    const auto is_line_of_full_disk = [](const Run& run) {
+        return run.code == 2 && run.error_lines() == 1 && run.err.find("No space left") != std::string::npos;
+    };
+    Run run = program.run(with({"--passes", "1", "-q", "--stats", "stats.json", "--checkpoint", "/dev/full"}));
+    CHECK_MESSAGE(is_line_of_full_disk(run), run.err);
+    CHECK(read_exr(program.folder / "out.exr").width == 16);
+    CHECK(nlohmann::json::parse(read_text(program.folder / "stats.json"))["passes"] == 1);
+
+    std::filesystem::remove(program.folder / "out.exr");
+    std::filesystem::create_symlink("/dev/full", program.folder / "out.exr");
+    run = program.run(with({"--passes", "2", "-q", "--stats", "stats.json", "--checkpoint", "state"}));
+    CHECK_MESSAGE(is_line_of_full_disk(run), run.err);
+    CHECK(nlohmann::json::parse(read_text(program.folder / "stats.json"))["passes"] == 2);
+    CHECK(std::filesystem::file_size(program.folder / "state") > 0);
+
+    run = program.run(with({"--passes", "2", "-q", "--stats", "/dev/full", "--checkpoint", "again"}));
+    CHECK_MESSAGE(is_line_of_full_disk(run), run.err);
+    CHECK(run.err.find("out.exr") < run.err.find("/dev/full"));
+    CHECK(std::filesystem::file_size(program.folder / "again") > 0);
 }
