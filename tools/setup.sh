@@ -12,7 +12,8 @@ packages=(
     libvulkan-dev vulkan-validationlayers libvulkan1
     glslang-dev glslang-tools spirv-tools spirv-headers libglm-dev libtinygltf-dev libopenexr-dev libfmt-dev
     libcli11-dev nlohmann-json3-dev doctest-dev libstb-dev gnuplot-nox
-    libglfw3-dev libimgui-dev # the window
+    libmeshoptimizer-dev libdraco-dev libwebp-dev # packed meshes and textures of glTF
+    libglfw3-dev libimgui-dev fonts-dejavu-core # the window
     xvfb libxtst-dev # tests of the window
     libopenvdb-dev libboost-dev # grids of media; OpenVDB's headers want Boost's
 )

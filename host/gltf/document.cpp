@@ -26,13 +26,19 @@ const char* const modelled_extensions[] = {"ETD_optics",
                                            "KHR_materials_anisotropy",
                                            "KHR_materials_iridescence",
                                            "KHR_materials_diffuse_transmission",
+                                           "KHR_materials_unlit",
+                                           "KHR_materials_pbrSpecularGlossiness",
+                                           "KHR_materials_variants",
                                            "KHR_lights_punctual",
                                            "KHR_texture_transform",
                                            "KHR_mesh_quantization",
+                                           "KHR_draco_mesh_compression",
+                                           "EXT_meshopt_compression",
+                                           "EXT_texture_webp",
                                            "EXT_mesh_gpu_instancing"};
 
-// Part of the scene format, so a scene may require them; for now they are read past, with a warning.
-const char* const planned_extensions[] = {"KHR_materials_unlit", "EXT_lights_ies"};
+// What a scene may require although it is read past, with a warning.
+const char* const passed_extensions[] = {"EXT_lights_ies", "KHR_animation_pointer"};
 
 bool is_among(std::span<const char* const> names, const std::string& name) {
     return std::any_of(names.begin(), names.end(), [&](const char* n) { return name == n; });
@@ -151,7 +157,12 @@ void check_extensions(GltfImport& import) {
     for (size_t i = 0; i < array_size(import.root, "extensionsRequired"); ++i) {
         JsonAt at = document_element(import, "extensionsRequired", i);
         const std::string& name = text_value(at);
-        if (!is_among(modelled_extensions, name) && !is_among(planned_extensions, name))
+        if (name == "KHR_texture_basisu")
+            fail_at(at,
+                    "requires the extension {}: its textures, of KTX 2, cannot be read; PNG, JPEG, WebP, "
+                    "Radiance .hdr and OpenEXR can",
+                    name);
+        if (!is_among(modelled_extensions, name) && !is_among(passed_extensions, name))
             fail_at(at, "requires the extension {}, which is not known", name);
     }
     std::map<std::string, JsonAt> ignored;
@@ -164,38 +175,19 @@ void check_extensions(GltfImport& import) {
         warn(import, at, fmt::format("{} is not modelled yet: ignored", name));
 }
 
-void load_buffers(GltfImport& import) {
-    for (size_t i = 0; i < array_size(import.root, "buffers"); ++i) {
-        JsonAt buffer = document_element(import, "buffers", i);
-        size_t length = integer_value(member(buffer, "byteLength"), 1, uint64_t(1) << 53);
-        std::span<const uint8_t> bytes;
-        std::optional<JsonAt> uri = find(buffer, "uri");
-        if (!uri) {
-            if (i != 0 || !import.binary_chunk.data())
-                fail_at(buffer,
-                        "has no \"uri\"; only the first buffer of a .glb with a binary chunk needs none");
-            bytes = import.binary_chunk;
-        } else if (is_data_uri(text_value(*uri))) {
-            bytes = import.decoded.emplace_back(decode_data_uri(*uri));
-        } else {
-            const auto& file = import.scene.buffer_files.emplace_back(resolve_uri(import, *uri));
-            bytes = octets(import.files.emplace_back(read_whole_file(file)));
-        }
-        if (bytes.size() < length)
-            fail_at(buffer, "is truncated: byteLength says {}, there are {} bytes", length, bytes.size());
-        import.buffers.push_back(bytes.first(length));
-    }
-    for (size_t i = 0; i < array_size(import.root, "bufferViews"); ++i) {
-        JsonAt view = document_element(import, "bufferViews", i);
-        const auto& bytes =
-            import.buffers[index_value(member(view, "buffer"), import.buffers.size(), "/buffers")];
-        size_t offset = integer(view, "byteOffset", 0, 0, uint64_t(1) << 53);
-        size_t length = integer_value(member(view, "byteLength"), 1, uint64_t(1) << 53);
-        if (offset > bytes.size() || length > bytes.size() - offset)
-            fail_at(view, "bytes {} to {} of a buffer that has {}", offset, offset + length, bytes.size());
-        import.views.push_back(
-            {bytes.subspan(offset, length), size_t(integer(view, "byteStride", 0, 4, 252))});
-    }
+void load_variants(GltfImport& import) {
+    const std::string& wanted = import.options.variant;
+    if (std::optional<JsonAt> extension = find_extension(import.root, "KHR_materials_variants"))
+        for (size_t i = 0; i < array_size(*extension, "variants"); ++i)
+            import.scene.variants.push_back(
+                text_value(member(element(member(*extension, "variants"), i), "name")));
+    if (wanted.empty()) return;
+    const auto& names = import.scene.variants;
+    const auto found = std::find(names.begin(), names.end(), wanted);
+    if (found == names.end())
+        fail_input("{}: has no variant '{}' of its materials; it has: {}", import.file_name, wanted,
+                   names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
+    import.variant = uint32_t(found - names.begin());
 }
 
 }  // namespace etendue

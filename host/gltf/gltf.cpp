@@ -17,6 +17,7 @@ SceneDescription import_gltf(std::span<const uint8_t> bytes, const std::filesyst
 
     parse_document(import, bytes);
     check_extensions(import);
+    load_variants(import);
     load_buffers(import);
     load_accessors(import);
     load_root_optics(import);

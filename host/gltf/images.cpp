@@ -38,15 +38,28 @@ void read_sampler(const JsonAt& sampler, TextureDescription& texture) {
     texture.nearest = filter == 9728;
 }
 
+// The image of a texture: that of EXT_texture_webp before the one for those who cannot read it.
+uint32_t source_of(const GltfImport& import, const JsonAt& texture) {
+    const size_t count = array_size(import.root, "images");
+    std::optional<uint32_t> source;
+    if (std::optional<JsonAt> webp = find_extension(texture, "EXT_texture_webp"))
+        source = index(*webp, "source", count, "/images");
+    if (!source) source = index(texture, "source", count, "/images");
+    if (source) return *source;
+    if (find_extension(texture, "KHR_texture_basisu"))
+        fail_at(texture,
+                "is of KTX 2 alone (KHR_texture_basisu), which cannot be read; a texture needs a "
+                "\"source\" of type PNG, JPEG, WebP, .hdr or .exr");
+    fail_at(texture, "has no \"source\"; a texture needs one, of type PNG, JPEG, WebP, .hdr or .exr");
+}
+
 uint32_t use_texture(GltfImport& import, uint32_t gltf_texture) {
     import.texture_of.resize(array_size(import.root, "textures"), UINT32_MAX);
     uint32_t& place = import.texture_of[gltf_texture];
     if (place != UINT32_MAX) return place;
     JsonAt at = document_element(import, "textures", gltf_texture);
     TextureDescription texture;
-    std::optional<uint32_t> source = index(at, "source", array_size(import.root, "images"), "/images");
-    if (!source) fail_at(at, "has no \"source\"; a texture needs one, of type PNG, JPEG, .hdr or .exr");
-    texture.image = use_image(import, *source);
+    texture.image = use_image(import, source_of(import, at));
     std::optional<uint32_t> sampler = index(at, "sampler", array_size(import.root, "samplers"), "/samplers");
     if (sampler) read_sampler(document_element(import, "samplers", *sampler), texture);
     place = uint32_t(import.scene.textures.size());
@@ -103,6 +116,17 @@ nlohmann::json read_texture_info(GltfImport& import, const JsonAt& info) {
     return result;
 }
 
+nlohmann::json derived_texture(GltfImport& import, const nlohmann::json& info, ImageMaker make) {
+    TextureDescription texture = import.scene.textures[info["index"].get<uint32_t>()];
+    texture.image = uint32_t(import.images_to_decode.size());
+    import.images_to_decode.push_back(UINT32_MAX);
+    import.images_to_make[texture.image] = std::move(make);
+    nlohmann::json result = info;
+    result["index"] = import.scene.textures.size();
+    import.scene.textures.push_back(texture);
+    return result;
+}
+
 void decode_images(GltfImport& import) {
     size_t count = import.images_to_decode.size();
     import.scene.images.resize(count);
@@ -110,7 +134,8 @@ void decode_images(GltfImport& import) {
     std::atomic<size_t> next = 0;
     auto work = [&] {
         for (size_t i = next++; i < count; i = next++) try {
-                import.scene.images[i] = decode_gltf_image(import, import.images_to_decode[i]);
+                if (import.images_to_decode[i] != UINT32_MAX)
+                    import.scene.images[i] = decode_gltf_image(import, import.images_to_decode[i]);
             } catch (...) {
                 failures[i] = std::current_exception();
             }
@@ -122,6 +147,8 @@ void decode_images(GltfImport& import) {
     helpers.clear();
     for (const std::exception_ptr& failure : failures)
         if (failure) std::rethrow_exception(failure);
+    for (const auto& [image, make] : import.images_to_make)
+        import.scene.images[image] = make(import.scene.images);
 }
 
 }  // namespace etendue

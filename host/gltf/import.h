@@ -1,6 +1,8 @@
-// What the parts of the importer (gltf_*.cpp) share. Nothing else includes it.
+// What the parts of the importer (of this folder) share. Nothing else includes it.
 #pragma once
 #include <deque>
+#include <functional>
+#include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <set>
 #include <span>
@@ -57,6 +59,28 @@ struct MeshRange {
     bool read = false;
 };
 
+// The vertices of a primitive that its triangles use: others are not read.
+struct VertexRange {
+    size_t first = 0, count = 0;
+};
+
+// What animations say of a node at the moment that is wanted; what they do not say is the node's own.
+struct NodePose {
+    std::optional<glm::dvec3> translation, scale;
+    std::optional<glm::dquat> rotation;
+    std::optional<std::vector<double>> weights;  // of morph targets
+};
+
+// Of the mesh of a node.
+struct Deformation {
+    std::vector<double> weights;     // of morph targets; empty = all 0
+    JsonAt weights_at;               // where they stand, for messages
+    std::vector<glm::dmat4> joints;  // world_from_mesh of each joint of its skin; empty = no skin
+    bool none() const { return weights.empty() && joints.empty(); }
+};
+
+using ImageMaker = std::function<ImageDescription(const std::vector<ImageDescription>& images)>;
+
 struct GltfImport {
     ImportOptions options;
     SceneDescription scene;
@@ -72,11 +96,16 @@ struct GltfImport {
     std::vector<BufferView> views;
     std::vector<Accessor> accessors;
 
-    std::vector<MeshRange> mesh_ranges;  // per glTF mesh, read when a node first uses it
+    std::vector<NodePose> poses;         // per glTF node
+    std::vector<uint32_t> parents;       // per glTF node, UINT32_MAX for roots
+    std::optional<uint32_t> variant;     // of materials, that is wanted
+    std::vector<MeshRange> mesh_ranges;  // per glTF mesh, read when a node first uses it undeformed
     std::vector<Bounds> mesh_bounds;     // per SceneDescription::meshes
     std::vector<uint32_t> image_of;      // glTF image -> SceneDescription::images; UINT32_MAX = unused
     std::vector<uint32_t> texture_of;    // glTF texture -> SceneDescription::textures; UINT32_MAX = unused
-    std::vector<uint32_t> images_to_decode;  // glTF image of each of SceneDescription::images
+    std::vector<uint32_t>
+        images_to_decode;  // glTF image of each of SceneDescription::images; UINT32_MAX = made
+    std::map<uint32_t, ImageMaker> images_to_make;  // index into SceneDescription::images
     uint32_t default_material = UINT32_MAX;
     std::set<std::string> warned;  // subjects of warnings that are given once
     struct {
@@ -92,17 +121,20 @@ void warn(GltfImport& import, const JsonAt& at, const std::string& message);
 // Only the first of several warnings on one subject is kept.
 void warn_once(GltfImport& import, const std::string& subject, const JsonAt& at, const std::string& message);
 
-// gltf_document.cpp: file, JSON, extensions, buffers, views.
+// document.cpp: file, JSON, extensions.
 void parse_document(GltfImport& import, std::span<const uint8_t> bytes);
 void check_extensions(GltfImport& import);
-void load_buffers(GltfImport& import);
+void load_variants(GltfImport& import);  // the names, and which is wanted
 
-// gltf_uri.cpp: what a URI refers to.
+// buffers.cpp
+void load_buffers(GltfImport& import);  // and views
+
+// uri.cpp: what a URI refers to.
 bool is_data_uri(const std::string& uri);
 Bytes decode_data_uri(const JsonAt& uri);
 std::filesystem::path resolve_uri(const GltfImport& import, const JsonAt& uri);  // an existing regular file
 
-// gltf_accessors.cpp
+// accessors.cpp
 void load_accessors(GltfImport& import);
 const Accessor& accessor_at(const GltfImport& import, const JsonAt& index_at);
 size_t component_size(Component component);
@@ -111,34 +143,72 @@ std::vector<uint32_t> read_indices(const Accessor& accessor);
 // apart.
 void read_floats(const Accessor& accessor, size_t first, size_t count, float* out, size_t out_stride);
 
-// gltf_images.cpp
+// draco.cpp: data of the accessors of a primitive that KHR_draco_mesh_compression has packed.
+void decode_draco(GltfImport& import, const JsonAt& primitive);
+
+// images.cpp
 // Checks a textureInfo and returns it with `index` into SceneDescription::textures.
 nlohmann::json read_texture_info(GltfImport& import, const JsonAt& info);
+// The texture of a textureInfo that was read, but with an image that is made of others once they are decoded.
+nlohmann::json derived_texture(GltfImport& import, const nlohmann::json& info, ImageMaker make);
 void decode_images(GltfImport& import);
 
-// gltf_materials.cpp
+// materials.cpp
 void load_materials(GltfImport& import);
+// As glTF names the alpha modes, for class `principled`.
+int alpha_mode(const JsonAt& material);
 uint32_t default_material(GltfImport& import);
 // A dielectric takes its refractive indices from the media on its sides. One without media named gets one
 // inside, from the "ior" of its parameters, which lose it.
 void take_medium_from_ior(GltfImport& import, MaterialDescription& material, const JsonAt& at,
                           nlohmann::json& parameters);
 
-// gltf_optics.cpp: ETD_optics, cameras and lights.
+// material_models.cpp: what extensions put in the place of metallic-roughness, as parameters of `principled`.
+nlohmann::json specular_glossiness(GltfImport& import, const JsonAt& extension);
+// The parameters, and the emission that shows the colour.
+nlohmann::json unlit(GltfImport& import, const JsonAt& material, MaterialDescription& description);
+
+// optics.cpp: ETD_optics, cameras and lights.
 void load_root_optics(GltfImport& import);
 void read_material_optics(GltfImport& import, const JsonAt& optics, MaterialDescription& material);
 void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local);
 void check_media_names(const GltfImport& import);
 
-// gltf_punctual.cpp: glTF's own cameras and lights.
+// punctual.cpp: glTF's own cameras and lights.
 void read_node_camera(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local);
 void read_node_light(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local);
 
-// gltf_meshes.cpp
-MeshRange read_mesh(GltfImport& import, uint32_t gltf_mesh);
+// meshes.cpp
+MeshRange read_mesh(GltfImport& import, uint32_t gltf_mesh, const Deformation& deformation);
 
-// gltf_nodes.cpp
+// attributes.cpp
+void read_attributes(GltfImport& import, const JsonAt& attributes, size_t vertex_count, VertexRange range,
+                     MeshDescription& mesh);
+bool are_within_limits(const std::vector<glm::vec3>& positions);  // finite, none beyond max_coordinate
+// Changes of the attributes of a morph target's vertices; those that it does not change are empty.
+MeshDescription read_morph_target(GltfImport& import, const JsonAt& target, size_t vertex_count,
+                                  VertexRange range);
+// Of JOINTS_n, whole numbers, and WEIGHTS_n.
+std::vector<glm::vec4> read_joints(GltfImport& import, const JsonAt& attributes, const std::string& name,
+                                   VertexRange range, size_t vertex_count);
+std::vector<glm::vec4> read_joint_weights(GltfImport& import, const JsonAt& attributes,
+                                          const std::string& name, VertexRange range, size_t vertex_count);
+
+// animations.cpp: how long the animations last, and poses at the moment that is wanted.
+void pose_nodes(GltfImport& import);
+
+// deformation.cpp
+size_t morph_targets(const GltfImport& import, const JsonAt& node);  // of the node's mesh
+Deformation deformation_of(GltfImport& import, uint32_t node);       // of a node with a mesh
+// Both change a mesh whose attributes are those of the vertices in `range`.
+void morph(GltfImport& import, const JsonAt& primitive, size_t vertex_count, VertexRange range,
+           const Deformation& deformation, MeshDescription& mesh);
+void skin(GltfImport& import, const JsonAt& attributes, size_t vertex_count, VertexRange range,
+          const Deformation& deformation, MeshDescription& mesh);
+
+// nodes.cpp
 void load_nodes(GltfImport& import);
+glm::dmat4 local_transform(const GltfImport& import, uint32_t node);  // as posed
 // No axis of the local frame vanishes or lies in the plane of the other two.
 bool is_invertible(const glm::dmat4& matrix);
 

@@ -18,14 +18,6 @@ void read_texture(GltfImport& import, const JsonAt& object, const char* key, jso
         parameters[name] = read_texture_info(import, *info);
 }
 
-int alpha_mode(const JsonAt& material) {
-    std::string mode = text(material, "alphaMode", "OPAQUE");
-    if (mode == "OPAQUE") return 0;
-    if (mode == "MASK") return 1;
-    if (mode == "BLEND") return 2;
-    fail_at(member(material, "alphaMode"), "is '{}'; must be OPAQUE, MASK or BLEND", mode);
-}
-
 double material_ior(const JsonAt& material) {
     std::optional<JsonAt> extension = find_extension(material, "KHR_materials_ior");
     if (!extension) return 1.5;
@@ -123,8 +115,7 @@ void read_coat_normals(GltfImport& import, const JsonAt& material, json& paramet
     if (map || find(material, "normalTexture")) parameters["clearcoat_normal_scale"] = scale != 0 ? scale : 1;
 }
 
-// The parameters of class `principled`, as glTF 2.0, section 3.9 and its appendix B name the quantities.
-json principled_parameters(GltfImport& import, const JsonAt& material) {
+json metallic_roughness(GltfImport& import, const JsonAt& material) {
     json p = json::object();
     json none = json::object();
     JsonAt metal = find_object(material, "pbrMetallicRoughness")
@@ -134,14 +125,22 @@ json principled_parameters(GltfImport& import, const JsonAt& material) {
     p["roughness"] = number(metal, "roughnessFactor", 1, 0, 1);
     read_texture(import, metal, "baseColorTexture", p, "base_color_texture");
     read_texture(import, metal, "metallicRoughnessTexture", p, "metallic_roughness_texture");
+    p["ior"] = material_ior(material);
+    read_surface_extensions(import, material, p);
+    return p;
+}
+
+// The parameters of class `principled`, as glTF 2.0, section 3.9 and its appendix B name the quantities.
+json principled_parameters(GltfImport& import, const JsonAt& material) {
+    std::optional<JsonAt> glossy = find_extension(material, "KHR_materials_pbrSpecularGlossiness");
+    json p = glossy ? specular_glossiness(import, *glossy) : metallic_roughness(import, material);
     p["alpha_mode"] = alpha_mode(material);
     p["alpha_cutoff"] = number(material, "alphaCutoff", 0.5, 0, max_coordinate);
-    p["ior"] = material_ior(material);
+    if (glossy) return p;
     if (std::optional<JsonAt> transmission = find_extension(material, "KHR_materials_transmission")) {
         p["transmission"] = number(*transmission, "transmissionFactor", 0, 0, 1);
         read_texture(import, *transmission, "transmissionTexture", p, "transmission_texture");
     }
-    read_surface_extensions(import, material, p);
     read_coat_normals(import, material, p);
     return p;
 }
@@ -219,6 +218,8 @@ MaterialDescription read_material(GltfImport& import, size_t i) {
     json& parameters = material.surface.parameters;
     if (material.surface.class_name == "dielectric") {
         take_medium_from_ior(import, material, at, parameters);
+    } else if (material.surface.class_name.empty() && find_extension(at, "KHR_materials_unlit")) {
+        material.surface = {"principled", unlit(import, at, material), at.pointer};
     } else if (material.surface.class_name.empty()) {
         material.surface = {"principled", principled_parameters(import, at), at.pointer};
         std::optional<JsonAt> volume = find_extension(at, "KHR_materials_volume");
@@ -250,6 +251,14 @@ void take_medium_from_ior(GltfImport& import, MaterialDescription& material, con
     if (names_media(material)) return;
     add_medium(import, material, at, {{"ior", parameters.value("ior", json(1.5))}});
     parameters.erase("ior");
+}
+
+int alpha_mode(const JsonAt& material) {
+    std::string mode = text(material, "alphaMode", "OPAQUE");
+    if (mode == "OPAQUE") return 0;
+    if (mode == "MASK") return 1;
+    if (mode == "BLEND") return 2;
+    fail_at(member(material, "alphaMode"), "is '{}'; must be OPAQUE, MASK or BLEND", mode);
 }
 
 void load_materials(GltfImport& import) {

@@ -10,18 +10,6 @@ namespace {
 
 enum Mode : uint64_t { points = 0, triangles = 4, strip = 5, fan = 6 };
 
-struct VertexRange {
-    size_t first = 0, count = 0;
-};
-
-bool is_among(const Accessor& a, std::initializer_list<Component> floats_and_integers,
-              bool integers_normalized) {
-    if (a.component == Component::f32) return true;
-    for (Component c : floats_and_integers)
-        if (c == a.component) return !integers_normalized || a.normalized;
-    return false;
-}
-
 // The corners of the triangles as indices of vertices, as glTF 2.0, section 3.7.2.1 orders them.
 std::vector<glm::uvec3> triangles_of(const JsonAt& primitive, uint64_t mode, std::vector<uint32_t> corners) {
     std::vector<glm::uvec3> result;
@@ -65,41 +53,6 @@ std::vector<uint32_t> corners_of(GltfImport& import, const JsonAt& primitive, si
                 bad - corners.begin(), vertex_count);
     }
     return corners;
-}
-
-template <class Vector>
-bool all_finite(const std::vector<Vector>& values, float limit) {
-    const float* v = reinterpret_cast<const float*>(values.data());
-    size_t count = values.size() * Vector::length();
-    uint32_t bad = 0;  // counted without a branch: this runs over every vertex of large scenes
-    for (size_t i = 0; i < count; ++i) bad += !(std::fabs(v[i]) <= limit);
-    return bad == 0;
-}
-
-// An attribute of the primitive; empty where the primitive does not have it.
-template <class Vector>
-std::vector<Vector> read_attribute(GltfImport& import, const JsonAt& attributes, const char* name,
-                                   VertexRange range, size_t vertex_count,
-                                   std::initializer_list<const char*> types,
-                                   std::initializer_list<Component> integers, bool integers_normalized) {
-    std::vector<Vector> values;
-    std::optional<JsonAt> at = find(attributes, name);
-    if (!at) return values;
-    const Accessor& accessor = accessor_at(import, *at);
-    bool type_known =
-        std::any_of(types.begin(), types.end(), [&](const char* t) { return accessor.type == t; });
-    if (!type_known)
-        fail_at(*at, "is an accessor of type {}; must be {}", accessor.type, fmt::join(types, " or "));
-    if (!is_among(accessor, integers, integers_normalized))
-        fail_at(*at, "is an accessor with components {}{}; not a form that {} may have",
-                uint32_t(accessor.component), accessor.normalized ? ", normalised" : "", name);
-    if (accessor.count != vertex_count)
-        fail_at(*at, "has {} elements; POSITION has {}", accessor.count, vertex_count);
-    values.resize(range.count, Vector(1.0f));
-    read_floats(accessor, range.first, range.count, &values[0].x, Vector::length());
-    if (!all_finite(values, float(max_coordinate)))
-        fail_at(*at, "has a value that is not finite, or beyond {:g}", max_coordinate);
-    return values;
 }
 
 template <class Vector>
@@ -179,41 +132,37 @@ void normalize_tangents(MeshDescription& mesh) {
     }
 }
 
-void read_attributes(GltfImport& import, const JsonAt& attributes, size_t vertex_count, VertexRange range,
-                     MeshDescription& mesh) {
-    using C = Component;
-    // The integer forms beside those of glTF 2.0 are KHR_mesh_quantization's.
-    const auto integers = {C::i8, C::u8, C::i16, C::u16}, signed_integers = {C::i8, C::i16};
-    mesh.positions = read_attribute<glm::vec3>(import, attributes, "POSITION", range, vertex_count, {"VEC3"},
-                                               integers, false);
-    mesh.normals = read_attribute<glm::vec3>(import, attributes, "NORMAL", range, vertex_count, {"VEC3"},
-                                             signed_integers, true);
-    mesh.tangents = read_attribute<glm::vec4>(import, attributes, "TANGENT", range, vertex_count, {"VEC4"},
-                                              signed_integers, true);
-    mesh.uv0 = read_attribute<glm::vec2>(import, attributes, "TEXCOORD_0", range, vertex_count, {"VEC2"},
-                                         integers, false);
-    mesh.uv1 = read_attribute<glm::vec2>(import, attributes, "TEXCOORD_1", range, vertex_count, {"VEC2"},
-                                         integers, false);
-    mesh.colors = read_attribute<glm::vec4>(import, attributes, "COLOR_0", range, vertex_count,
-                                            {"VEC3", "VEC4"}, {C::u8, C::u16}, true);
+// The material of the primitive, for the variant that is wanted (KHR_materials_variants).
+std::optional<uint32_t> material_of(const GltfImport& import, const JsonAt& primitive) {
+    const size_t count = array_size(import.root, "materials");
+    if (std::optional<JsonAt> variants = find_extension(primitive, "KHR_materials_variants"))
+        for (size_t m = 0; m < array_size(*variants, "mappings"); ++m) {
+            JsonAt mapping = element(member(*variants, "mappings"), m);
+            const uint32_t material = index_value(member(mapping, "material"), count, "/materials");
+            JsonAt of = member(mapping, "variants");
+            require_array(of);
+            for (size_t v = 0; v < of->size(); ++v)
+                if (index_value(element(of, v), import.scene.variants.size(), "the file's variants") ==
+                    import.variant)
+                    return material;
+        }
+    return index(primitive, "material", count, "/materials");
 }
 
 // False where the primitive has no triangles.
-bool read_primitive(GltfImport& import, const JsonAt& primitive, MeshDescription& mesh) {
+bool read_primitive(GltfImport& import, const JsonAt& primitive, const Deformation& deformation,
+                    MeshDescription& mesh) {
     uint64_t mode = integer(primitive, "mode", triangles, 0, 6);
     JsonAt attributes = member(primitive, "attributes");
     require_object(attributes);
-    std::optional<uint32_t> material =
-        index(primitive, "material", array_size(import.root, "materials"), "/materials");
+    const std::optional<uint32_t> material = material_of(import, primitive);
     if (mode < triangles) {
         const char* what = mode == points ? "points" : "lines";
         warn_once(import, what, primitive,
                   fmt::format("{} are not modelled: left out of mesh '{}'", what, mesh.name));
         return false;
     }
-    if (array_size(primitive, "targets") > 0)
-        warn_once(import, "targets", primitive,
-                  "morph targets are not modelled: meshes stay as they are without");
+    decode_draco(import, primitive);
     std::optional<JsonAt> position = find(attributes, "POSITION");
     if (!position) {
         warn(import, attributes, fmt::format("mesh '{}' has no POSITION: left out", mesh.name));
@@ -227,7 +176,15 @@ bool read_primitive(GltfImport& import, const JsonAt& primitive, MeshDescription
         low = std::min({low, t.x, t.y, t.z});
         high = std::max({high, t.x, t.y, t.z});
     }
-    read_attributes(import, attributes, vertex_count, {low, size_t(high) - low + 1}, mesh);
+    const VertexRange range = {low, size_t(high) - low + 1};
+    read_attributes(import, attributes, vertex_count, range, mesh);
+    if (!deformation.none()) {
+        morph(import, primitive, vertex_count, range, deformation, mesh);
+        skin(import, attributes, vertex_count, range, deformation, mesh);
+        if (!are_within_limits(mesh.positions))
+            fail_at(primitive, "is carried to coordinates beyond {:g} by its targets or joints",
+                    max_coordinate);
+    }
     if (low > 0)
         for (glm::uvec3& t : mesh.triangles) t -= low;
 
@@ -252,8 +209,9 @@ Bounds bounds_of(const MeshDescription& mesh) {
 
 }  // namespace
 
-MeshRange read_mesh(GltfImport& import, uint32_t gltf_mesh) {
-    MeshRange& range = import.mesh_ranges[gltf_mesh];
+MeshRange read_mesh(GltfImport& import, uint32_t gltf_mesh, const Deformation& deformation) {
+    MeshRange deformed;  // one for the node alone
+    MeshRange& range = deformation.none() ? import.mesh_ranges[gltf_mesh] : deformed;
     if (range.read) return range;
     range = {uint32_t(import.scene.meshes.size()), 0, true};
     JsonAt at = document_element(import, "meshes", gltf_mesh);
@@ -264,7 +222,7 @@ MeshRange read_mesh(GltfImport& import, uint32_t gltf_mesh) {
         MeshDescription mesh;
         mesh.name = text(at, "name", fmt::format("mesh {}", gltf_mesh));
         mesh.where = primitive.pointer;
-        if (!read_primitive(import, primitive, mesh)) continue;
+        if (!read_primitive(import, primitive, deformation, mesh)) continue;
         import.mesh_bounds.push_back(bounds_of(mesh));
         import.scene.meshes.push_back(std::move(mesh));
         ++range.count;

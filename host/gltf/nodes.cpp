@@ -25,9 +25,15 @@ glm::dquat unit_quaternion(const JsonAt& at, double x, double y, double z, doubl
     return q / length;
 }
 
-glm::dmat4 local_transform(const JsonAt& node) {
+}  // namespace
+
+glm::dmat4 local_transform(const GltfImport& import, uint32_t n) {
+    JsonAt node = document_element(import, "nodes", n);
+    const NodePose& pose = import.poses[n];
+    const bool is_posed = pose.translation || pose.rotation || pose.scale;
     const double limit = max_coordinate;
-    if (std::optional<JsonAt> at = find(node, "matrix")) {
+    // glTF has no node with a matrix animated; where one is, the animation says all.
+    if (std::optional<JsonAt> at = find(node, "matrix"); at && !is_posed) {
         std::vector<double> v = number_array(*at, 16, -limit, limit);
         if (v[3] != 0 || v[7] != 0 || v[11] != 0 || v[15] != 1)
             fail_at(*at, "is not affine; elements 3, 7, 11 and 15 must be 0, 0, 0 and 1");
@@ -40,8 +46,11 @@ glm::dmat4 local_transform(const JsonAt& node) {
     std::vector<double> s = numbers(node, "scale", {1, 1, 1}, -limit, limit);
     glm::dquat q(1, 0, 0, 0);
     if (std::optional<JsonAt> at = find(node, "rotation")) q = unit_quaternion(*at, r[0], r[1], r[2], r[3]);
-    return trs_matrix({t[0], t[1], t[2]}, q, {s[0], s[1], s[2]});
+    return trs_matrix(pose.translation.value_or(glm::dvec3(t[0], t[1], t[2])), pose.rotation.value_or(q),
+                      pose.scale.value_or(glm::dvec3(s[0], s[1], s[2])));
 }
+
+namespace {
 
 // Fails where a node has two parents or is its own ancestor. Returns each node's parent, UINT32_MAX for
 // roots.
@@ -149,18 +158,27 @@ void check_world_bounds(const JsonAt& node, const Bounds& bounds, const glm::dma
     }
 }
 
-void place_mesh(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local) {
+// A skinned mesh stands where its joints are, whatever the node's own place (glTF 2.0, section 3.7.3.3).
+std::vector<glm::dmat4> placements(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local,
+                                   const Deformation& deformation) {
+    if (!deformation.joints.empty()) return {glm::dmat4(1.0)};
+    std::vector<glm::dmat4> result = gpu_instances(import, node);
+    for (glm::dmat4& m : result) m = world_from_local * m;
+    return result;
+}
+
+void place_mesh(GltfImport& import, uint32_t n, const glm::dmat4& world_from_local) {
+    JsonAt node = document_element(import, "nodes", n);
     std::optional<uint32_t> mesh = index(node, "mesh", array_size(import.root, "meshes"), "/meshes");
-    if (find(node, "skin"))
-        warn_once(import, "skin", node, "skins are not modelled: the mesh stays as it is without");
     if (!mesh) return;
-    MeshRange range = read_mesh(import, *mesh);
-    std::vector<glm::dmat4> placements = gpu_instances(import, node);
-    if (placements.size() * range.count + import.scene.instances.size() > max_objects)
+    const Deformation deformation = deformation_of(import, n);
+    const MeshRange range = read_mesh(import, *mesh, deformation);
+    const std::vector<glm::dmat4> places = placements(import, node, world_from_local, deformation);
+    if (places.size() * range.count + import.scene.instances.size() > max_objects)
         fail_at(node, "the scene has more than {} instances of meshes", max_objects);
     bool flat = false;
-    for (const glm::dmat4& placement : placements) {
-        MeshInstance instance{0, world_from_local * placement, node.pointer};
+    for (const glm::dmat4& place : places) {
+        MeshInstance instance{0, place, node.pointer};
         if (!is_invertible(instance.world_from_local)) {
             flat = true;
             continue;
@@ -185,26 +203,25 @@ bool is_invertible(const glm::dmat4& matrix) {
 
 void load_nodes(GltfImport& import) {
     import.mesh_ranges.resize(array_size(import.root, "meshes"));
-    if (array_size(import.root, "animations") > 0)
-        warn(import, member(import.root, "animations"),
-             "animations are not modelled: nodes stay where they are");
     struct Visit {
         uint32_t node;
         glm::dmat4 world_from_parent;
     };
-    std::vector<uint32_t> roots = root_nodes(import, check_hierarchy(import));
+    import.parents = check_hierarchy(import);
+    const std::vector<uint32_t> roots = root_nodes(import, import.parents);
+    pose_nodes(import);
     std::vector<Visit> open;
     for (size_t i = roots.size(); i-- > 0;) open.push_back({roots[i], glm::dmat4(1.0)});
     while (!open.empty()) {
         Visit visit = open.back();
         open.pop_back();
         JsonAt node = document_element(import, "nodes", visit.node);
-        glm::dmat4 world = visit.world_from_parent * local_transform(node);
+        glm::dmat4 world = visit.world_from_parent * local_transform(import, visit.node);
         for (int c = 0; c < 4; ++c)
             for (int r = 0; r < 3; ++r)
                 if (!(std::fabs(world[c][r]) <= max_coordinate))
                     fail_at(node, "its transform in world space has an element beyond {:g}", max_coordinate);
-        place_mesh(import, node, world);
+        place_mesh(import, visit.node, world);
         read_node_camera(import, node, world);
         read_node_light(import, node, world);
         read_node_optics(import, node, world);

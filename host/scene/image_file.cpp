@@ -12,9 +12,12 @@
 #include <stb/stb_image.h>
 #pragma GCC diagnostic pop
 
+#include <webp/decode.h>
+
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <numeric>
 
@@ -116,6 +119,26 @@ ImageDescription decode_exr(std::span<const uint8_t> bytes, const std::string& w
     return image;
 }
 
+bool is_webp(std::span<const uint8_t> bytes) {
+    return bytes.size() >= 12 && std::memcmp(bytes.data(), "RIFF", 4) == 0 &&
+           std::memcmp(bytes.data() + 8, "WEBP", 4) == 0;
+}
+
+ImageDescription decode_webp(std::span<const uint8_t> bytes, const std::string& where) {
+    WebPBitstreamFeatures features;
+    if (WebPGetFeatures(bytes.data(), bytes.size(), &features) != VP8_STATUS_OK)
+        fail_input("{}: the WebP image is damaged", where);
+    if (features.has_animation) fail_input("{}: the WebP image moves; allowed: one picture", where);
+    check_size(uint64_t(features.width), uint64_t(features.height), where);
+    ImageDescription image;
+    image.width = uint32_t(features.width), image.height = uint32_t(features.height);
+    image.rgba8.resize(4 * size_t(image.width) * image.height);
+    if (!WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.rgba8.data(), image.rgba8.size(),
+                            4 * features.width))
+        fail_input("{}: the WebP image is damaged or truncated", where);
+    return image;
+}
+
 bool is_exr(std::span<const uint8_t> bytes) {
     return bytes.size() >= 4 && bytes[0] == 0x76 && bytes[1] == 0x2F && bytes[2] == 0x31 && bytes[3] == 0x01;
 }
@@ -126,13 +149,16 @@ ImageDescription decode_image(std::span<const uint8_t> bytes, const std::string&
     ImageDescription image;
     if (is_exr(bytes)) {
         image = decode_exr(bytes, where);
+    } else if (is_webp(bytes)) {
+        image = decode_webp(bytes, where);
     } else if (is_radiance(bytes)) {
         image = decode_radiance(bytes, where, max_texels);
     } else {
         if (!bytes.empty() && bytes[0] == 0xFF) check_jpeg_tables(bytes, where);
         int width = 0, height = 0, channels = 0, size = int(std::min(bytes.size(), size_t(INT_MAX)));
         if (!stbi_info_from_memory(bytes.data(), size, &width, &height, &channels))
-            fail_input("{}: not an image that can be read; PNG, JPEG, Radiance .hdr and OpenEXR are", where);
+            fail_input("{}: not an image that can be read; PNG, JPEG, WebP, Radiance .hdr and OpenEXR are",
+                       where);
         check_size(uint64_t(width), uint64_t(height), where);
         image.width = uint32_t(width), image.height = uint32_t(height);
         Source source{bytes};

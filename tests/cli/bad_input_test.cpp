@@ -183,10 +183,7 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          2,
          {"s.gltf", "\\x1b[2J"},
          small_scene(R"({"class": "velvet\u001b[2J"})")},
-        {"no such variant",
-         with({"--variant", "midnight"}),
-         2,
-         {"s.gltf", "midnight", "none"}},
+        {"no such variant", with({"--variant", "midnight"}), 2, {"s.gltf", "midnight", "none"}},
         {"a moment before all others", with({"--at", "-1"}), 2, {"--at", "0 to 1e9"}},
         {"a number too large", render, 2, {"s.gltf"}, small_scene(R"({"class": "lambertian"})", "1e999")},
     });

@@ -223,8 +223,8 @@ TEST_CASE("a scene's own class files run where they are allowed") {
     nlohmann::json scene = nlohmann::json::parse(small_scene(R"({"class": "chalk"})"));
     scene["extensions"]["ETD_optics"]["class_files"] = {{{"interface", "surface"}, {"file", "chalk.glsl"}}};
     write_text(program.folder / "scene/s.gltf", scene.dump());
-    const Run run = program.run({"render", "scene/s.gltf", "-o", "out.exr", "--passes", "1", "--size", "4x4", "-q",
-                                 "--allow-class-files"});
+    const Run run = program.run({"render", "scene/s.gltf", "-o", "out.exr", "--passes", "1", "--size", "4x4",
+                                 "-q", "--allow-class-files"});
     CHECK_MESSAGE(run.code == 0, run.err);
     CHECK(std::filesystem::exists(program.folder / "out.exr"));
 }
@@ -235,7 +235,8 @@ TEST_CASE("an output that cannot be written costs no other one") {
     const auto is_line_of_full_disk = [](const Run& run) {
         return run.code == 2 && run.error_lines() == 1 && run.err.find("No space left") != std::string::npos;
     };
-    Run run = program.run(with({"--passes", "1", "-q", "--stats", "stats.json", "--checkpoint", "/dev/full"}));
+    Run run =
+        program.run(with({"--passes", "1", "-q", "--stats", "stats.json", "--checkpoint", "/dev/full"}));
     CHECK_MESSAGE(is_line_of_full_disk(run), run.err);
     CHECK(read_exr(program.folder / "out.exr").width == 16);
     CHECK(nlohmann::json::parse(read_text(program.folder / "stats.json"))["passes"] == 1);

@@ -110,7 +110,7 @@ TEST_CASE("image files that are missing, damaged, or not finite are refused") {
     CHECK(image_error(path).find(path.string()) == 0);
     write_file(path, std::string("no image"));
     CHECK(image_error(path) ==
-          path.string() + ": not an image that can be read; PNG, JPEG, Radiance .hdr and OpenEXR are");
+          path.string() + ": not an image that can be read; PNG, JPEG, WebP, Radiance .hdr and OpenEXR are");
     std::string jpeg = "\xFF\xD8\xFF\xC4";  // a Huffman table of 16 x 255 codes
     jpeg += std::string("\x10\x20\x00", 3) + std::string(16, '\xFF');
     write_file(path, jpeg);

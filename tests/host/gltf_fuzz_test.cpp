@@ -7,8 +7,9 @@ using namespace etendue;
 TEST_CASE("the scene that mutations start from is read without a warning") {
     SceneDescription s = import_gltf(rich_scene().glb(), "nowhere/fuzz.glb");
     CHECK(s.warnings.empty());
-    CHECK(s.instances.size() == 4);
-    CHECK(s.meshes.size() == 2);
+    CHECK(s.instances.size() == 5);
+    CHECK(s.meshes.size() == 3);
+    CHECK(import_gltf(rich_scene().glb(), "nowhere/fuzz.glb", {"v", 0.5}).warnings.empty());
 }
 
 TEST_CASE("three thousand damaged scenes give a sound description or a one-line error each") {

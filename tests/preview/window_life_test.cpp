@@ -178,8 +178,7 @@ TEST_CASE("a scene that brings class files is asked for, and shown only after a 
     const TemporaryFolder folder;
     write_text(folder / "chalk.glsl", chalk);
     // A relative path leads there from wherever the program's folder is.
-    const std::string there =
-        (std::filesystem::path("../") / folder.path.filename() / "chalk.glsl").string();
+    const std::string there = (std::filesystem::path("../") / folder.path.filename() / "chalk.glsl").string();
     const std::string scene =
         replaced(replaced(two_balls, R"("class": "lambertian", "reflectance": 0.5)",
                           R"("class": "chalk", "reflectance": 0.5)"),

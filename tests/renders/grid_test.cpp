@@ -244,8 +244,8 @@ TEST_CASE("clouds: by schedule the same film bit for bit") {
 }
 
 TEST_CASE("densities out of all proportion are opaque, and take no longer than others") {
-    // Half of the points are empty: there light would collide with nothing 10^30 times. What is thicker than can be
-    // resolved is all the same.
+    // Half of the points are empty: there light would collide with nothing 10^30 times. What is thicker than
+    // can be resolved is all the same.
     TemporaryFolder folder;
     const auto image = [&](float density, double reach) {
         DensityField(glm::uvec3(9), glm::dvec3(-reach), glm::dvec3(reach), [=](glm::dvec3 p) {
