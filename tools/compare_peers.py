@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Error against time of étendue and of other renderers, on the same cores in one run.
 
-    tools/compare_peers.py [-o DIR] [--time 30] [--threads 1] [--size WxH] [--peers A,B] [SCENE.gltf …]
+    tools/compare_peers.py [-o DIR] [--time 30] [--threads 1] [--size WxH] [--peers A,B]
+                           [--environment FILE.hdr] [SCENE.gltf …]
 
 For every scene it runs `etendue bench` into DIR/NAME, then gives every engine of the peers the same time in the same
 way: renders of 1, 2, 4, … samples a pixel, each with a seed of its own, in turn with the other engines, measured
@@ -19,6 +20,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -111,14 +113,14 @@ def run_bench(a, cores, arguments, **options):
 class Engine:
     """One engine of a peer, in a process of its own."""
 
-    def __init__(self, peer, name, engine, scene, size, cores, folder):
+    def __init__(self, peer, name, engine, scene, size, cores, folder, defaults):
         if not installed(peer):
             raise RuntimeError("could not be installed")
         self.name, self.file = name, folder / "image.npy"
         llvm = find_llvm() if peer == "mitsuba" else None
         worker = ROOT / "tools" / "peers" / f"{peer}_worker.py"
         threads = cores.count(",") + 1
-        words = [environment_for(peer), worker, scene, *size, threads, engine]
+        words = [environment_for(peer), worker, scene, *size, threads, engine, *map(json.dumps, defaults)]
         self.process = subprocess.Popen(
             ["taskset", "-c", cores, *map(str, words)],
             stdin=subprocess.PIPE,
@@ -272,6 +274,29 @@ def add_results(folder, scene, engines, failed, reference, notes):
     (folder / "bench.json").write_text(json.dumps(document, indent=2, ensure_ascii=False), encoding="utf-8")
 
 
+def default_view(a, scene):
+    """The camera that étendue takes where a file has none: all of the scene from the front, a little above."""
+    import numpy as np
+
+    sys.path.insert(0, str(ROOT / "tools" / "peers"))
+    import scene_data
+
+    if scene_data.document(scene).get("cameras"):
+        return None
+    told = subprocess.run([a.etendue, "inspect", scene], capture_output=True, text=True).stdout
+    found = re.search(r"sphere of radius (\S+) m around \(([^)]*)\)", told)
+    if not found:
+        return None
+    radius, centre = float(found[1]), np.array([float(x) for x in found[2].split(",")])
+    yfov, back = 0.6, np.array([0.35, 0.25, 1.0])
+    back /= np.linalg.norm(back)
+    right = np.cross([0, 1, 0], back)
+    right /= np.linalg.norm(right)
+    m = np.eye(4)
+    m[:3] = np.stack([right, np.cross(back, right), back, centre + back * radius / math.sin(yfov / 2)], 1)
+    return {"matrix": m.tolist(), "yfov": yfov}
+
+
 def compare(a, scene, cores):
     name = scene.parent.name if scene.stem == "scene" else scene.stem
     folder = a.output / name
@@ -279,6 +304,9 @@ def compare(a, scene, cores):
     arguments = [scene, "-o", folder, "--time", a.time, "--seed", a.seed, "--algorithms", a.algorithms]
     if a.size:
         arguments += ["--size", a.size]
+    if a.environment:
+        arguments += ["--environment", a.environment]
+    defaults = [default_view(a, scene), a.environment and str(a.environment.resolve())]
     beside = scene.parent / "reference.exr"
     if scene.stem == "scene" and beside.exists():
         arguments += ["--reference", beside]
@@ -297,7 +325,7 @@ def compare(a, scene, cores):
                 own = Path(temporary) / label
                 own.mkdir()
                 try:
-                    engines.append(Engine(peer, label, engine, scene, size, cores, own))
+                    engines.append(Engine(peer, label, engine, scene, size, cores, own, defaults))
                 except (RuntimeError, OSError) as e:
                     notes.append(f"{label}: left out: {e}")
                     note(notes[-1])
@@ -324,6 +352,7 @@ def main():
     parser.add_argument("--time", type=float, default=30, metavar="SEC", help="for each engine; 30")
     parser.add_argument("--threads", type=int, default=1, metavar="N", help="1")
     parser.add_argument("--size", metavar="WxH", help="the reference's, else as for `etendue render`")
+    parser.add_argument("--environment", type=Path, metavar="FILE.hdr", help="as for `etendue render`")
     parser.add_argument("--seed", type=int, default=0, metavar="N")
     parser.add_argument(
         "--algorithms", default="backward,forward,bidirectional", metavar="A,B", help="of étendue"

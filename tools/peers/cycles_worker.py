@@ -1,5 +1,7 @@
-"""Cycles, in Blender's Python module. It has no spheres: they become meshes."""
+"""Cycles, in Blender's Python module. It has no spheres: they become meshes. Scenes of glTF's own materials come by
+Blender's importer."""
 
+import math
 import os
 import tempfile
 import time
@@ -16,6 +18,10 @@ def material(bpy, name, m):
     nodes.clear()
     output = nodes.new("ShaderNodeOutputMaterial")
     kind = m["class"]
+    if m.get("medium"):
+        volume(nodes, links, output, m["medium"])
+    if kind == "boundary":
+        return result
     if max(m["emission"]) > 0:  # black behind: the front emits, the back does not
         if kind != "lambertian" or max(m["reflectance"]) > 0:
             raise scene_data.Unsupported("an emitting surface that is not black")
@@ -48,13 +54,66 @@ def material(bpy, name, m):
     return result
 
 
+def by_importer(bpy, a):
+    """glTF's own materials, as Blender's importer reads them: it fills the scene, which has +z up."""
+    gltf = scene_data.document(a.scene)
+    if beyond := {e for e in gltf.get("extensionsUsed", []) if e.startswith("ETD_") or "light" in e}:
+        raise scene_data.Unsupported(", ".join(sorted(beyond)))
+    bpy.ops.import_scene.gltf(filepath=a.scene)
+    return {
+        "meshes": [],
+        "spheres": [],
+        "camera": scene_data.camera(gltf, a.view),
+        "environment": scene_data.environment(gltf, a.scene, a.image),
+    }
+
+
+def world(bpy, tree, environment, up):
+    background = tree.nodes["Background"]
+    if not isinstance(environment, scene_data.EnvironmentImage):
+        background.inputs["Color"].default_value = [*environment, 1]
+        return
+    # Blender's images have +x in their centre and +z up, and run to the right as ours do.
+    image, place, direction = (
+        tree.nodes.new("ShaderNode" + name) for name in ("TexEnvironment", "Mapping", "TexCoord")
+    )
+    image.image = bpy.data.images.load(environment.file)
+    quarter = math.pi / 2
+    upright = quarter if up.is_identity else 0
+    place.inputs["Rotation"].default_value = [upright, 0, -quarter - environment.rotation]
+    background.inputs["Strength"].default_value = environment.scale
+    tree.links.new(direction.outputs["Generated"], place.inputs["Vector"])
+    tree.links.new(place.outputs["Vector"], image.inputs["Vector"])
+    tree.links.new(image.outputs["Color"], background.inputs["Color"])
+
+
+def volume(nodes, links, output, medium):
+    """Absorption and scattering beside each other; a colour takes what the density gives."""
+    absorption, scattering, both = (
+        nodes.new("ShaderNode" + name) for name in ("VolumeAbsorption", "VolumeScatter", "AddShader")
+    )
+    greatest = max(medium.absorption)
+    absorption.inputs["Density"].default_value = greatest
+    absorption.inputs["Color"].default_value = [*(1 - x / (greatest or 1) for x in medium.absorption), 1]
+    greatest = max(medium.scattering)
+    scattering.inputs["Density"].default_value = greatest
+    scattering.inputs["Color"].default_value = [*(x / (greatest or 1) for x in medium.scattering), 1]
+    scattering.inputs["Anisotropy"].default_value = medium.g
+    links.new(absorption.outputs[0], both.inputs[0])
+    links.new(scattering.outputs[0], both.inputs[1])
+    links.new(both.outputs[0], output.inputs["Volume"])
+
+
 def start(a):
     import bpy
     from mathutils import Matrix
 
-    data = scene_data.load(a.scene)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
+    try:
+        data, up = scene_data.load(a.scene, a.view, a.image), Matrix.Identity(4)
+    except scene_data.Unsupported:
+        data, up = by_importer(bpy, a), Matrix.Rotation(math.pi / 2, 4, "X")  # +y becomes +z
     for i, data_mesh in enumerate(data["meshes"] + [sphere.mesh() for sphere in data["spheres"]]):
         mesh = bpy.data.meshes.new(f"mesh{i}")
         mesh.from_pydata(data_mesh.positions.tolist(), [], data_mesh.triangles.tolist())
@@ -65,12 +124,12 @@ def start(a):
     if data["environment"]:
         scene.world = bpy.data.worlds.new("world")
         scene.world.use_nodes = True
-        scene.world.node_tree.nodes["Background"].inputs["Color"].default_value = [*data["environment"], 1]
+        world(bpy, scene.world.node_tree, data["environment"], up)
     camera = bpy.data.cameras.new("camera")
     camera.sensor_fit, camera.angle = "VERTICAL", data["camera"]["yfov"]
     camera.clip_start, camera.clip_end = 1e-3, 1e6
     scene.camera = bpy.data.objects.new("camera", camera)
-    scene.camera.matrix_world = Matrix(data["camera"]["matrix"].tolist())
+    scene.camera.matrix_world = up @ Matrix(data["camera"]["matrix"].tolist())
     scene.collection.objects.link(scene.camera)
 
     scene.render.engine = "CYCLES"
@@ -85,7 +144,7 @@ def start(a):
     cycles = scene.cycles
     cycles.device, cycles.use_adaptive_sampling, cycles.use_denoising = "CPU", False, False
     cycles.pixel_filter_type = "BOX"
-    cycles.max_bounces = cycles.diffuse_bounces = 64
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.volume_bounces = 64
     cycles.glossy_bounces = cycles.transmission_bounces = 64
     cycles.blur_glossy = 0
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0

@@ -11,6 +11,8 @@ import worker
 def material(m):
     """Properties of a material, without their prefix."""
     kind = m["class"]
+    if m.get("medium"):
+        raise scene_data.Unsupported("media")
     if kind == "lambertian":
         properties = {"type": ["matte"], "kd": m["reflectance"]}
     elif kind == "conductor" and m["alpha"] < 1e-4 and "reflectance" in m:
@@ -40,7 +42,7 @@ def start(a):
 
     lux.Init()
     lux.SetLogHandler(lambda message: None)
-    data = scene_data.load(a.scene)
+    data = scene_data.load(a.scene, a.view, a.image)
     scene = lux.Scene()
     camera = data["camera"]["matrix"]
     position, forward, up = camera[:3, 3], -camera[:3, 2], camera[:3, 1]
@@ -60,6 +62,8 @@ def start(a):
     window[2:] -= (window[3] - window[2]) / a.height  # its rows come one lower than those of other renderers
     put("scene.camera.screenwindow", *map(float, window))
     put("scene.camera.clippingplane.enable", False)
+    if isinstance(data["environment"], scene_data.EnvironmentImage):
+        raise scene_data.Unsupported("environment images")
     if data["environment"]:
         put("scene.lights.environment.type", "constantinfinite")
         put("scene.lights.environment.color", *data["environment"])

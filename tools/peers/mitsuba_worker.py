@@ -1,4 +1,5 @@
-"""Mitsuba 3: variant llvm_ad_rgb, integrators `path` and `ptracer` without a depth limit, one kernel for the whole image."""
+"""Mitsuba 3: variant llvm_ad_rgb, integrators `path` (`volpath` where there are media) and `ptracer` without a depth limit,
+one kernel for the whole image."""
 
 import math
 import os
@@ -34,7 +35,30 @@ def bsdf(m):
             else {"type": "dielectric"}
         )
         return rough | {"int_ior": m["ior"], "ext_ior": 1.0}
+    if kind == "boundary":
+        return {"type": "null"}
     raise scene_data.Unsupported(f"the surface '{kind}'")
+
+
+def medium(m):
+    absorption, scattering = np.array(m.absorption), np.array(m.scattering)
+    extinction = absorption + scattering
+    albedo = np.divide(scattering, extinction, out=np.zeros(3), where=extinction > 0)
+    return {
+        "type": "homogeneous",
+        "scale": float(extinction.max()),  # colours are at most 1
+        "sigma_t": {"type": "rgb", "value": (extinction / extinction.max()).tolist()},
+        "albedo": {"type": "rgb", "value": albedo.tolist()},
+        "phase": {"type": "hg", "g": m.g} if m.g else {"type": "isotropic"},
+    }
+
+
+def environment(mi, e):
+    if not isinstance(e, scene_data.EnvironmentImage):
+        return {"type": "constant", "radiance": {"type": "rgb", "value": e}}
+    # Mitsuba's images have -z at their edges, ours in their centre; both run to the right.
+    turn = mi.ScalarTransform4f().rotate([0, 1, 0], 180 + math.degrees(e.rotation))
+    return {"type": "envmap", "filename": e.file, "scale": e.scale, "to_world": turn}
 
 
 def ply(mi, data):
@@ -79,6 +103,11 @@ def scene_dict(mi, data, width, height, integrator):
 
     def add(shape, m):
         shape["bsdf"] = bsdf(m)
+        if m.get("medium"):
+            if integrator != "path":
+                raise scene_data.Unsupported("media")
+            scene["integrator"]["type"] = "volpath"
+            shape["interior"] = medium(m["medium"])
         if max(m["emission"]) > 0:
             shape["emitter"] = {"type": "area", "radiance": {"type": "rgb", "value": m["emission"]}}
         scene[f"shape{len(scene)}"] = shape
@@ -97,7 +126,7 @@ def scene_dict(mi, data, width, height, integrator):
     for sphere in data["spheres"]:
         add({"type": "sphere", "center": sphere.centre, "radius": sphere.radius}, sphere.material)
     if data["environment"]:
-        scene["environment"] = {"type": "constant", "radiance": {"type": "rgb", "value": data["environment"]}}
+        scene["environment"] = environment(mi, data["environment"])
     return scene
 
 
@@ -107,7 +136,7 @@ def start(a):
 
     mi.set_variant("llvm_ad_rgb")
     dr.set_thread_count(a.threads)
-    scene = mi.load_dict(scene_dict(mi, scene_data.load(a.scene), a.width, a.height, a.engine))
+    scene = mi.load_dict(scene_dict(mi, scene_data.load(a.scene, a.view, a.image), a.width, a.height, a.engine))
 
     def render(samples, seed):
         begin = time.perf_counter()

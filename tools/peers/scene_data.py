@@ -64,10 +64,37 @@ def _matrix(node):
 
 
 SURFACES = {
+    "boundary": set(),
     "lambertian": {"reflectance"},
     "conductor": {"reflectance", "eta", "k", "alpha", "multiscatter"},
     "dielectric": {"alpha", "multiscatter"},
 }
+
+
+@dataclass
+class Medium:
+    """The same everywhere; 1/m."""
+
+    absorption: list
+    scattering: list
+    g: float  # of Henyey and Greenstein's phase function; 0: isotropic
+
+
+def _medium(medium):
+    """None where it is clear."""
+    phase = medium.get("phase", {"class": "isotropic"})
+    known = {"isotropic": {"class"}, "henyey_greenstein": {"class", "g"}}
+    if (
+        medium["class"] != "homogeneous"
+        or set(medium) - {"name", "class", "ior", "absorption", "scattering", "phase"}
+        or set(phase) - known.get(phase["class"], set())
+        or not isinstance(medium.get("ior", 1.0), (int, float))
+    ):
+        raise Unsupported(f"the medium '{medium['name']}'")
+    absorption, scattering = (_rgb(medium.get(key, 0)) for key in ("absorption", "scattering"))
+    if max(absorption + scattering) == 0:
+        return None
+    return Medium(absorption, scattering, phase.get("g", 0.0))
 
 
 def _material(gltf, material):
@@ -92,9 +119,8 @@ def _material(gltf, material):
     if "inside" in optics:
         media = {m["name"]: m for m in gltf["extensions"]["ETD_optics"]["media"]}
         inside = media[optics["inside"]]
-        if set(inside) - {"name", "class", "ior"}:
-            raise Unsupported(f"the medium '{inside['name']}'")
         surface["ior"] = inside.get("ior", 1.0)
+        surface["medium"] = _medium(inside)
     elif surface["class"] == "dielectric":
         raise Unsupported(f"the material '{name}' without a medium inside")
     strength = (
@@ -109,6 +135,8 @@ def _material(gltf, material):
 def _accessor(gltf, index):
     accessor = gltf["accessors"][index]
     view = gltf["bufferViews"][accessor["bufferView"]]
+    if not gltf["buffers"][view["buffer"]].get("uri", "").startswith("data:"):
+        raise Unsupported("a buffer in another file")
     data = base64.b64decode(gltf["buffers"][view["buffer"]]["uri"].split(",", 1)[1])
     dtype = {5126: "<f4", 5123: "<u2", 5125: "<u4", 5121: "<u1"}[accessor["componentType"]]
     width = {"SCALAR": 1, "VEC3": 3}[accessor["type"]]
@@ -146,18 +174,68 @@ def _shape(geometry, m, materials):
     raise Unsupported(f"the geometry '{geometry['class']}'")
 
 
-def load(path):
-    """meshes, spheres, camera {matrix, yfov}, environment (radiance or None). The camera is the first."""
+@dataclass
+class EnvironmentImage:
+    """Latitude and longitude: the centre looks along -z, columns run to the right as seen from inside, +y is up."""
+
+    file: str
+    scale: float
+    rotation: float  # rad, about +y, counter-clockwise seen from above
+
+
+def document(path):
+    """The JSON of a .gltf or .glb file."""
+    data = Path(path).read_bytes()
+    if data[:4] == b"glTF":
+        data = data[20 : 20 + int.from_bytes(data[12:16], "little")]
+    return json.loads(data)
+
+
+def roots(gltf):
+    return gltf["scenes"][gltf.get("scene", 0)]["nodes"]
+
+
+def camera(gltf, default=None):
+    """The first camera, {matrix, yfov}; `default` where the file has none."""
+    open_nodes = [(root, np.eye(4)) for root in reversed(roots(gltf))]
+    while open_nodes:
+        index, parent = open_nodes.pop()
+        node = gltf["nodes"][index]
+        m = parent @ _matrix(node)
+        if "camera" in node:
+            found = gltf["cameras"][node["camera"]]
+            if found["type"] != "perspective":
+                raise Unsupported("an orthographic camera")
+            return {"matrix": m, "yfov": found["perspective"]["yfov"]}
+        open_nodes += [(child, m) for child in reversed(node.get("children", []))]
+    if default is None:
+        raise Unsupported("a scene without a camera")
+    return {"matrix": np.array(default["matrix"]), "yfov": default["yfov"]}
+
+
+def environment(gltf, path, image=None):
+    """Radiance, EnvironmentImage or None; `image` is the file of one in its place."""
+    if image:
+        return EnvironmentImage(str(image), 1.0, 0.0)
+    found = gltf.get("extensions", {}).get("ETD_optics", {}).get("environment")
+    if found is None:
+        return None
+    if found["class"] == "constant":
+        return _rgb(found["radiance"])
+    if found["class"] == "image":
+        file = Path(path).parent / found["file"]
+        return EnvironmentImage(str(file), found.get("scale", 1.0), found.get("rotation", 0.0))
+    raise Unsupported(f"the environment '{found['class']}'")
+
+
+def load(path, view=None, image=None):
+    """meshes, spheres, camera, environment: `view` and `image` are the defaults of those two."""
     if Path(path).suffix != ".gltf":
         raise Unsupported("files that are not .gltf")
-    gltf = json.loads(Path(path).read_text(encoding="utf-8"))
-    materials = [_material(gltf, m) for m in gltf["materials"]]
-    scene = {"meshes": [], "spheres": [], "camera": None, "environment": None}
-    environment = gltf.get("extensions", {}).get("ETD_optics", {}).get("environment")
-    if environment:
-        if environment["class"] != "constant":
-            raise Unsupported(f"the environment '{environment['class']}'")
-        scene["environment"] = _rgb(environment["radiance"])
+    gltf = document(path)
+    materials = [_material(gltf, m) for m in gltf.get("materials", [])]
+    scene = {"meshes": [], "spheres": []}
+    scene["camera"], scene["environment"] = camera(gltf, view), environment(gltf, path, image)
 
     def visit(index, parent):
         node = gltf["nodes"][index]
@@ -171,18 +249,11 @@ def load(path):
             scene["spheres" if isinstance(shape, Sphere) else "meshes"].append(shape)
         for primitive in gltf["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
             scene["meshes"].append(_mesh(gltf, primitive, m, materials))
-        if "camera" in node and scene["camera"] is None:
-            camera = gltf["cameras"][node["camera"]]
-            if camera["type"] != "perspective":
-                raise Unsupported("an orthographic camera")
-            scene["camera"] = {"matrix": m, "yfov": camera["perspective"]["yfov"]}
         for child in node.get("children", []):
             visit(child, m)
 
-    for root in gltf["scenes"][gltf.get("scene", 0)]["nodes"]:
+    for root in roots(gltf):
         visit(root, np.eye(4))
-    if scene["camera"] is None:
-        raise Unsupported("a scene without a camera")
     return scene
 
 

@@ -9,10 +9,16 @@ import numpy as np
 
 
 def arguments():
-    """SCENE WIDTH HEIGHT THREADS ENGINE"""
-    scene, width, height, threads, engine = sys.argv[1:6]
+    """SCENE WIDTH HEIGHT THREADS ENGINE VIEW IMAGE: view and environment where the scene has none, or null"""
+    scene, width, height, threads, engine, view, image = sys.argv[1:8]
     return SimpleNamespace(
-        scene=scene, width=int(width), height=int(height), threads=int(threads), engine=engine
+        scene=scene,
+        width=int(width),
+        height=int(height),
+        threads=int(threads),
+        engine=engine,
+        view=json.loads(view),
+        image=json.loads(image),
     )
 
 
