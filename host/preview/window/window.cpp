@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "host/error.h"
 #include "host/image/atomic_file.h"
 #include "host/interrupt.h"
 #include "host/preview/view_module.h"
+#include "host/preview/window/font.h"
 #include "host/preview/window/input.h"
 #include "host/preview/window/panels.h"
 #include "host/preview/window/presenter.h"
@@ -65,9 +67,7 @@ struct Panels {
         ImGui::CreateContext();
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;
-        ImFontConfig font;
-        font.SizePixels = std::floor(13 * scale);  // the built-in font's own size
-        io.Fonts->AddFontDefault(&font);
+        load_font(scale);
         ImGui::StyleColorsDark();
         ImGui::GetStyle().ScaleAllSizes(scale);
         ImGui_ImplGlfw_InitForVulkan(window, true);
@@ -97,6 +97,12 @@ class Screen {
   public:
     explicit Screen(ViewState& state) : state_(state) { open(); }
     void resized() { presenter_->resized(); }
+    // Letters and panels for another display than before.
+    void rescale(float by) {
+        load_font(state_.content_scale);
+        ImGui::GetStyle().ScaleAllSizes(by);
+        open();
+    }
     uint64_t device_bytes() const { return presenter_->device_bytes(); }
     uint32_t devices_lost() const { return devices_lost_; }
     const std::shared_ptr<const PreviewPicture>& developed() const { return developed_; }
@@ -168,7 +174,7 @@ void write_view_stats(const ViewState& state, const Screen& screen) {
 }
 
 void show_until_closed(ViewState& state, Input& input, Screen& screen) {
-    const float first_scale = state.content_scale;
+    float scale = state.content_scale;  // that letters and panels are made for
     bool moved = false;       // the view, in the frame before
     double last_picture = 0;  // while the view moves; 0 = it stood still
     int frames_left = frames_after_events;
@@ -206,7 +212,8 @@ void show_until_closed(ViewState& state, Input& input, Screen& screen) {
         if (frames_left == 0 || (start < next && !is_first)) continue;
         --frames_left;
 
-        ImGui::GetIO().FontGlobalScale = state.content_scale / first_scale;  // moved to another display
+        if (state.content_scale != scale)  // moved to another display
+            screen.rescale(state.content_scale / std::exchange(scale, state.content_scale));
         ImGui_ImplVulkan_NewFrame();
         ImGui_ImplGlfw_NewFrame();
         ImGui::NewFrame();
