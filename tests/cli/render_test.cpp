@@ -3,7 +3,7 @@
 
 #include "host/image/exr.h"
 #include "tests/cli/program.h"
-#include "tests/support/source_path.h"
+#include "tests/support/class_file.h"
 
 using namespace etendue;
 
@@ -214,12 +214,8 @@ TEST_CASE("a spectral image has a channel a bin, and is resumed with them") {
 
 TEST_CASE("a scene's own class files run where they are allowed") {
     Executable program;
-    std::string chalk = read_text(source_path("shaders/surfaces/lambertian.glsl"));
-    for (const auto& [from, to] : {std::pair{"Lambertian", "Chalk"}, {"lambertian", "chalk"}})
-        for (size_t at; (at = chalk.find(from)) != std::string::npos;)
-            chalk.replace(at, std::string(from).size(), to);
     std::filesystem::create_directory(program.folder / "scene");
-    write_text(program.folder / "scene/chalk.glsl", chalk);
+    write_text(program.folder / "scene/chalk.glsl", chalk_class());
     nlohmann::json scene = nlohmann::json::parse(small_scene(R"({"class": "chalk"})"));
     scene["extensions"]["ETD_optics"]["class_files"] = {{{"interface", "surface"}, {"file", "chalk.glsl"}}};
     write_text(program.folder / "scene/s.gltf", scene.dump());

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/preview/two_balls.h"
+#include "tests/support/class_file.h"
 #include "tests/support/source_path.h"
 
 using namespace etendue;
@@ -171,12 +172,8 @@ TEST_CASE("Ctrl+S saves the image as EXR and PNG") {
 }
 
 TEST_CASE("a scene that brings class files is asked for, and shown only after a yes") {
-    std::string chalk = read_text(source_path("shaders/surfaces/lambertian.glsl"));
-    for (const auto& [from, to] : {std::pair{"Lambertian", "Chalk"}, {"lambertian", "chalk"}})
-        for (size_t at; (at = chalk.find(from)) != std::string::npos;)
-            chalk.replace(at, std::string(from).size(), to);
     const TemporaryFolder folder;
-    write_text(folder / "chalk.glsl", chalk);
+    write_text(folder / "chalk.glsl", chalk_class());
     // A relative path leads there from wherever the program's folder is.
     const std::string there = (std::filesystem::path("../") / folder.path.filename() / "chalk.glsl").string();
     const std::string scene =

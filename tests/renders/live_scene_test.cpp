@@ -7,6 +7,8 @@
 #include "host/gpu/shader_compiler.h"
 #include "host/scene/live_places.h"
 #include "host/scene/live_scene.h"
+#include "tests/host/gltf_scene_builder.h"
+#include "tests/support/class_file.h"
 #include "tests/support/render_probe.h"
 #include "tests/support/source_path.h"
 #include "tests/support/temporary_folder.h"
@@ -404,4 +406,55 @@ TEST_CASE("a broken shader is one line, and the scene before it stays") {
     write_text(shaders / "surfaces/lambertian.glsl", darker.replace(at, 6, "0.5 * INV_PI"));
     const std::shared_ptr<Scene> next = live.reload();
     CHECK(film(*next) != seen);
+}
+
+TEST_CASE("the variant and the moment of a file change, and where that fails all stays as it was") {
+    TemporaryFolder folder;
+    GltfBuilder b;
+    b.document["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "night"}}};
+    b.document["materials"] = {json::object(), {{"name", "dark"}}};
+    json& primitive = b.triangle();
+    primitive["material"] = 0;
+    primitive["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 1}, {"variants", {0}}}};
+    const int input = b.accessor<float>("SCALAR", {0, 2}),
+              output = b.accessor<float>("VEC3", {0, 0, 0, 8, 0, 0});
+    b.document["animations"] = {
+        {{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}},
+         {"samplers", {{{"input", input}, {"output", output}}}}}};
+    const std::vector<uint8_t> bytes = b.glb();
+    write_text(folder / "scene.glb", {bytes.begin(), bytes.end()});
+    LiveScene live(test_device(), folder / "scene.glb", test_options());
+    CHECK(live.description().animation_seconds == 2);
+    live.reload({"night", 1});
+    CHECK(live.import() == ImportOptions{});  // not before it is accepted
+    live.accept();
+    CHECK(live.import() == ImportOptions{"night", 1});
+    CHECK(live.description().instances.at(0).world_from_local[3].x == 4);
+    CHECK(live.description().meshes.at(0).material == 1);
+    CHECK_THROWS_AS(live.reload({"noon", 1}), Error);
+    CHECK(live.description().instances.at(0).world_from_local[3].x == 4);
+    live.reload();  // as it is
+    live.accept();
+    CHECK(live.description().instances.at(0).world_from_local[3].x == 4);
+}
+
+TEST_CASE("class files run only where they are allowed, also once a file that is read again brings some") {
+    TemporaryFolder folder;
+    GltfBuilder b;
+    b.triangle();
+    const auto write = [&] {
+        const std::vector<uint8_t> bytes = b.glb();
+        write_text(folder / "scene.glb", {bytes.begin(), bytes.end()});
+    };
+    write();
+    SceneOptions options = test_options();
+    options.allow_class_files = false;
+    LiveScene live(test_device(), folder / "scene.glb", options);
+    write_text(folder / "chalk.glsl", chalk_class());
+    b.document["extensions"]["ETD_optics"]["class_files"] = {
+        {{"interface", "surface"}, {"file", "chalk.glsl"}}};
+    write();
+    CHECK_THROWS_AS(live.reload(), ClassFilesRefused);
+    live.allow_class_files();
+    CHECK(live.reload()->registry->find(Interface::surface, "chalk") != nullptr);
 }
