@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "host/error.h"
+
 namespace etendue {
 namespace {
 
@@ -129,7 +131,7 @@ void finish_progress(Progress& progress, const RenderStatus& status) {
 
 void show_note(Progress& progress, const std::string& line) {
     if (progress.style == ProgressStyle::quiet) return;
-    fmt::print(progress.stream, "{}{}\n", progress.bar_stands ? "\r\x1b[K" : "", line);
+    fmt::print(progress.stream, "{}{}\n", progress.bar_stands ? "\r\x1b[K" : "", printable(line));
     std::fflush(progress.stream);
     progress.bar_stands = false;
 }

@@ -38,7 +38,7 @@ int inspect_command(const InspectOptions& options) {
     Scene& scene = opened.scene;
     const bool any = !scene.receivers.empty() || !options.receiver.empty();
     const Receiver* chosen = any ? &choose_receiver(scene, options) : nullptr;
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
     if (options.json) {
         if (!chosen) choose_receiver(scene, options);  // which fails with a line
         print_choice(opened, *chosen, options);

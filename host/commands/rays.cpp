@@ -38,7 +38,7 @@ int rays_command(const RaysOptions& options) {
     const PathFilter filter = filter_of(options);
     OpenedScene opened = open_scene(options);
     Scene& scene = opened.scene;
-    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+    for (const std::string& warning : scene.warnings) fmt::print(stderr, "warning: {}\n", printable(warning));
     const Receiver& receiver = choose_receiver(scene, options);
     RenderSettings settings;
     settings.receiver = receiver.ref;

@@ -17,11 +17,21 @@ std::vector<double> weights_value(const JsonAt& at) {
     return number_array(at, at->size(), -max_coordinate, max_coordinate);
 }
 
-// Where a joint stands, from wherever its tree begins.
-glm::dmat4 joint_transform(const GltfImport& import, uint32_t joint) {
-    glm::dmat4 m(1.0);
-    for (uint32_t n = joint; n != UINT32_MAX; n = import.parents[n]) m = local_transform(import, n) * m;
-    return m;
+// Where every node stands, from wherever its tree begins: joints may be outside of the scene that is shown.
+std::vector<glm::dmat4> world_transforms(const GltfImport& import) {
+    std::vector<glm::dmat4> worlds(import.parents.size());
+    std::vector<bool> known(worlds.size(), false);
+    std::vector<uint32_t> path;
+    for (uint32_t node = 0; node < worlds.size(); ++node) {
+        for (uint32_t n = node; n != UINT32_MAX && !known[n]; n = import.parents[n]) path.push_back(n);
+        for (; !path.empty(); path.pop_back()) {
+            const uint32_t n = path.back(), parent = import.parents[n];
+            worlds[n] = local_transform(import, n);
+            if (parent != UINT32_MAX) worlds[n] = worlds[parent] * worlds[n];
+            known[n] = true;
+        }
+    }
+    return worlds;
 }
 
 std::vector<glm::dmat4> inverse_bind_matrices(GltfImport& import, const JsonAt& skin, size_t joints) {
@@ -107,10 +117,11 @@ Deformation deformation_of(GltfImport& import, uint32_t n) {
     JsonAt joints = member(skin_at, "joints");
     require_array(joints);
     if (joints->empty()) fail_at(joints, "is empty; a skin has at least one joint");
+    if (import.worlds.empty()) import.worlds = world_transforms(import);
     result.joints = inverse_bind_matrices(import, skin_at, joints->size());
     for (size_t j = 0; j < joints->size(); ++j) {
         const uint32_t joint = index_value(element(joints, j), import.parents.size(), "/nodes");
-        result.joints[j] = joint_transform(import, joint) * result.joints[j];
+        result.joints[j] = import.worlds[joint] * result.joints[j];
     }
     return result;
 }

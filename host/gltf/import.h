@@ -23,6 +23,8 @@ inline std::span<const uint8_t> octets(const std::vector<std::byte>& bytes) {
 
 // Coordinates beyond this are refused: their squares must stay finite in 32-bit floats.
 inline constexpr double max_coordinate = 1e18;
+// Meshes that targets and skins shape anew for each node cost the file nothing.
+inline constexpr size_t max_deformed_vertices = size_t(1) << 27;
 // Records are addressed by 24 bits.
 inline constexpr size_t max_objects = size_t(1) << 24;
 
@@ -98,6 +100,8 @@ struct GltfImport {
 
     std::vector<NodePose> poses;         // per glTF node
     std::vector<uint32_t> parents;       // per glTF node, UINT32_MAX for roots
+    std::vector<glm::dmat4> worlds;      // per glTF node, world_from_local; filled for the first skin
+    size_t deformed_vertices = 0;        // of meshes that are made for a node alone
     std::optional<uint32_t> variant;     // of materials, that is wanted
     std::vector<MeshRange> mesh_ranges;  // per glTF mesh, read when a node first uses it undeformed
     std::vector<Bounds> mesh_bounds;     // per SceneDescription::meshes

@@ -44,12 +44,13 @@ glm::dvec4 texel(const ImageDescription& image, uint32_t x, uint32_t y, uint32_t
 
 double greatest(const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); }
 
-// Of two images, of the larger size of both.
+// Of two images, of the size of the larger one.
 template <class Combine>  // linear texels to one of numbers from 0 to 1, which become bytes as they are
 ImageDescription combined(const ImageDescription& a, const ImageDescription& b, Combine combine) {
     ImageDescription image;
     image.name = a.name;
-    image.width = std::max(a.width, b.width), image.height = std::max(a.height, b.height);
+    const ImageDescription& larger = uint64_t(b.width) * b.height > uint64_t(a.width) * a.height ? b : a;
+    image.width = larger.width, image.height = larger.height;
     image.rgba8.reserve(4 * size_t(image.width) * image.height);
     for (uint32_t y = 0; y < image.height; ++y)
         for (uint32_t x = 0; x < image.width; ++x) {

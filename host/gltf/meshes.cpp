@@ -179,6 +179,10 @@ bool read_primitive(GltfImport& import, const JsonAt& primitive, const Deformati
     const VertexRange range = {low, size_t(high) - low + 1};
     read_attributes(import, attributes, vertex_count, range, mesh);
     if (!deformation.none()) {
+        import.deformed_vertices += range.count;
+        if (import.deformed_vertices > max_deformed_vertices)
+            fail_at(primitive, "the nodes of the scene have more than {} vertices by targets and skins",
+                    max_deformed_vertices);
         morph(import, primitive, vertex_count, range, deformation, mesh);
         skin(import, attributes, vertex_count, range, deformation, mesh);
         if (!are_within_limits(mesh.positions))
@@ -198,6 +202,9 @@ bool read_primitive(GltfImport& import, const JsonAt& primitive, const Deformati
     normalize_normals(mesh);
     normalize_tangents(mesh);
     mesh.material = material ? *material : default_material(import);
+    if (material && !mesh.colors.empty() &&
+        find_extension(document_element(import, "materials", *material), "KHR_materials_unlit"))
+        warn_once(import, "unlit colors", primitive, "colours of vertices do not count on unlit materials");
     return true;
 }
 

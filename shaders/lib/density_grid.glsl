@@ -104,11 +104,11 @@ void next_brick(inout DensityWalk w) {
     else enter_brick(w);
 }
 
-// 1/m. Light that collides more often does so within a thousandth of a brick, or what the distance is rounded by, which no
-// picture shows: tracking takes what is thicker for this. So a spike in a file, or a file whose extent is out of proportion,
+// 1/m. Light that collides more often does so within a 64th of a cell, or what the distance is rounded by, which is less than
+// a lattice can say: tracking takes what is thicker for this. So a spike in a file, or a file whose extent is out of proportion,
 // costs no more than the bricks on the way, and steps never become too short to be taken.
 float walk_greatest_rate(DensityWalk w) {
-    return min(1000.0 / BRICK_CELLS * length(w.direction), 0.5 / (EPSILON * w.end));
+    return min(64.0 * length(w.direction), 0.5 / (EPSILON * w.end));
 }
 
 // Where the walk is.

@@ -88,6 +88,9 @@ TEST_CASE("an unlit material is a black surface that emits its base colour") {
     CHECK(m.surface.parameters["specular"] == 0);
     CHECK(m.surface.parameters["alpha_mode"] == 2);
     CHECK(s.warnings.empty());
+    b.document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+        b.accessor<float>("VEC3", {1, 0, 0, 1, 0, 0, 1, 0, 0});
+    CHECK(has_warning(b.import(), "colours of vertices do not count on unlit materials"));
 }
 
 TEST_CASE("specular-glossiness by factors: c_diff, F0 and alpha as its specification says") {

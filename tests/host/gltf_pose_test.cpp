@@ -196,6 +196,16 @@ TEST_CASE("a skinned mesh stands where its joints carry it, and its normals with
     CHECK(s.meshes.at(0).positions.at(2) == glm::vec3(0, 1, 2));
 }
 
+TEST_CASE("joints stand where all nodes above them put them, in whichever order the file has them") {
+    GltfBuilder b = skinned();
+    b.document["nodes"][2]["children"] = {1};  // joint 0 below joint 1
+    b.document["scenes"][0]["nodes"] = {0, 2};
+    CHECK(b.import().meshes.at(0).positions.at(0) == glm::vec3(10, 0, 5));
+    b.node({{"scale", {1, 1, 2}}, {"children", {2}}});
+    b.document["scenes"][0]["nodes"] = {0, 3};
+    CHECK(b.import().meshes.at(0).positions.at(0) == glm::vec3(10, 0, 10));
+}
+
 TEST_CASE("weights that sum up to something else are scaled; none at all go with the first joint") {
     GltfBuilder b = skinned();
     json& attributes = b.document["meshes"][0]["primitives"][0]["attributes"];
