@@ -185,6 +185,17 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          small_scene(R"({"class": "velvet\u001b[2J"})")},
         {"no such variant", with({"--variant", "midnight"}), 2, {"s.gltf", "midnight", "none"}},
         {"a moment before all others", with({"--at", "-1"}), 2, {"--at", "0 to 1e9"}},
+        {"densities without any extent",
+         render,
+         2,
+         {"s.gltf", "/extensions/ETD_optics/media/0", "1e-12"},
+         R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "extensions": {"ETD_optics": {"media": [
+{"name": "smoke", "class": "grid", "file": "smoke.nrrd"}], "environment": {"class": "constant"}}}})",
+         [](Executable& p) {
+             write_text(p.folder / "smoke.nrrd",
+                        "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n"
+                        "spacings: 1 1e-30 1\n\nabcdefgh");
+         }},
         {"a number too large", render, 2, {"s.gltf"}, small_scene(R"({"class": "lambertian"})", "1e999")},
     });
 }

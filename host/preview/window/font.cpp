@@ -8,8 +8,7 @@
 namespace etendue {
 namespace {
 
-constexpr float font_pixels = 14;       // of a display of 96 dpi
-constexpr float fallback_pixels = 13;   // the size that the built-in bitmap is drawn for
+constexpr float font_pixels = 13;       // of a display of 96 dpi; what the built-in bitmap is drawn for
 constexpr const char* font_files[] = {  // the first that is there; DejaVu is what tools/setup.sh installs
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
     "/usr/share/fonts/TTF/DejaVuSans.ttf",
@@ -37,7 +36,7 @@ void load_font(float scale) {
     ImFontConfig config;
     config.OversampleH = 2;
     const char* file = font_file();
-    const float pixels = std::floor((file ? font_pixels : fallback_pixels) * scale);
+    const float pixels = std::floor(font_pixels * scale);
     if (file && fonts.AddFontFromFileTTF(file, pixels, &config, letters) && fonts.Build()) return;
     // The built-in bitmap: Latin alone, and coarse where it is enlarged.
     fonts.Clear();
