@@ -1,4 +1,4 @@
-// Options of `etendue merge`.
+// The command line of `etendue merge`.
 #pragma once
 #include <optional>
 #include <string>

@@ -28,7 +28,7 @@ TEST_CASE("a Slurm array job and the job that merges its parts") {
     write_text(program.folder / "bin/sbatch",
                "#!/bin/bash\nprintf '%s|' \"$@\" >> calls.txt\necho >> calls.txt\necho 4711\n");
     std::filesystem::permissions(program.folder / "bin/sbatch", std::filesystem::perms::owner_all);
-    const std::string script = source_path("tools/cluster/slurm.sh").string();
+    const std::string script = source_path("tools/cluster/slurm.sh");
 
     REQUIRE(shell(program, script + " s.gltf out.exr 10 3 --size 16x8 -- --partition=night --time=1:00:00") ==
             0);
