@@ -42,8 +42,14 @@ int terminal_columns(std::FILE* stream) {
 
 }  // namespace
 
+uint64_t passes_to_end_at(uint64_t passes, uint64_t before) {
+    const uint64_t even = std::bit_ceil(passes);
+    return double(even - passes) < 0.1 * double(passes - before) ? even : passes;
+}
+
 double fraction_done(const RenderStatus& status) {
     double fraction = 0;
+    if (status.even_passes) return double(status.passes) / double(*status.even_passes);
     if (status.passes_goal && *status.passes_goal > 0)
         fraction = double(status.passes) / double(*status.passes_goal);
     if (status.seconds_goal && *status.seconds_goal > 0) fraction = status.seconds / *status.seconds_goal;
@@ -53,7 +59,8 @@ double fraction_done(const RenderStatus& status) {
 }
 
 std::optional<double> seconds_left(const RenderStatus& status) {
-    if (status.seconds_goal) return std::max(0.0, *status.seconds_goal - status.seconds);
+    if (status.seconds_goal && !status.even_passes)
+        return std::max(0.0, *status.seconds_goal - status.seconds);
     double fraction = fraction_done(status);
     if (fraction <= 0 || status.seconds <= 0 || status.passes <= status.passes_before) return std::nullopt;
     double passes_left = double(status.passes) * (1 - fraction) / fraction;
@@ -64,6 +71,7 @@ std::string progress_line(const RenderStatus& status) {
     std::string line = status.passes_goal
                            ? fmt::format("{}/{} passes", status.passes, *status.passes_goal)
                            : fmt::format("{} {}", status.passes, status.passes == 1 ? "pass" : "passes");
+    if (status.even_passes) line += fmt::format(" (on to {}, a power of two)", *status.even_passes);
     if (status.error) line += fmt::format(" · error {:.3g}", *status.error);
     if (status.error_goal) line += fmt::format(" (to {:.3g})", *status.error_goal);
     if (status.seconds > 0) line += " · " + rate(status.rays / status.seconds);

@@ -16,7 +16,12 @@ struct RenderStatus {
     std::optional<double> error;  // estimated, once it can be
     std::optional<uint64_t> passes_goal;
     std::optional<double> seconds_goal, error_goal;
+    std::optional<uint64_t> even_passes;  // that it goes on to, the goal being reached: see passes_to_end_at()
 };
+
+// Sobol' samples pay off at powers of two passes. Where a render may end after `passes`, of which this run made those
+// after `before`: the next power of two if that takes less than a tenth more time, else `passes`.
+uint64_t passes_to_end_at(uint64_t passes, uint64_t before);
 
 double fraction_done(const RenderStatus& status);  // 0 to 1; 0 where it cannot be told
 std::optional<double> seconds_left(

@@ -21,10 +21,13 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
         "Stop after N passes: paths a pixel (default: 64); A:B makes passes A to B - 1 of a "
         "run, for merge");
     auto* seconds =
-        render->add_option("--time", arguments.seconds, "Stop after that many seconds of rendering");
+        render->add_option("--time", arguments.seconds,
+                           "Stop after that many seconds of rendering, or up to a tenth later at a power of "
+                           "two passes, where samples are most even");
     auto* error = render->add_option(
         "--error", arguments.error,
-        "Stop when the relative error (root of the relMSE) is below E, with 95 % confidence");
+        "Stop when the relative error (root of the relMSE) is below E, with 95 % confidence, or up to a "
+        "tenth later as for --time");
     passes->option_text("N|A:B")->excludes(seconds)->excludes(error);
     seconds->option_text("SEC")->excludes(error);
     error->option_text("E");

@@ -141,6 +141,7 @@ int render_command(const RenderOptions& given) {
     auto render_start = Clock::now();
     double next_checkpoint = checkpoint_seconds;
     ErrorGoal error_goal{options.error.value_or(0)};
+    const bool is_sobol = !scene.features.independent_samples;
     bool accurate = false;
     const auto has_all = [&] { return options.passes && passes_left(options, *renderer) == 0; };
     bool done = has_all();
@@ -157,7 +158,7 @@ int render_command(const RenderOptions& given) {
                 next_checkpoint = checkpoint_seconds;
                 error_goal = ErrorGoal{options.error.value_or(0)};
                 status.seconds = 0;
-                status.error.reset();
+                status.error.reset(), status.even_passes.reset();
                 accurate = done = false;
             } else {
                 renderer->explain(chooses.choice());
@@ -176,9 +177,13 @@ int render_command(const RenderOptions& given) {
             continue;
         }
         double batch = batch_seconds;
-        if (options.seconds) batch = std::min(batch, *options.seconds - status.seconds);
+        if (options.seconds && !status.even_passes)
+            batch = std::min(batch, *options.seconds - status.seconds);
         uint32_t count = renderer->passes_in(batch);
-        if (options.passes) count = uint32_t(std::min<uint64_t>(count, passes_left(options, *renderer)));
+        if (status.even_passes)
+            count = uint32_t(std::min<uint64_t>(count, *status.even_passes - renderer->passes()));
+        else if (options.passes)
+            count = uint32_t(std::min<uint64_t>(count, passes_left(options, *renderer)));
         renderer->render_passes(count);
         status.passes = renderer->passes();
         status.seconds = seconds_since(render_start);
@@ -188,7 +193,16 @@ int render_command(const RenderOptions& given) {
             status.error = error.value();
             accurate = error_goal.look(renderer->passes(), error);
         }
-        done = has_all() || (options.seconds && status.seconds >= *options.seconds) || accurate;
+        if (status.even_passes) {
+            done = renderer->passes() >= *status.even_passes;
+        } else {
+            done = has_all() || (options.seconds && status.seconds >= *options.seconds) || accurate;
+            const uint64_t end = passes_to_end_at(renderer->passes(), status.passes_before);
+            if (done && !options.passes && is_sobol && end > renderer->passes()) {
+                status.even_passes = end;
+                done = false;
+            }
+        }
         if (!chooses.is_open() && status.seconds >= next_checkpoint) {
             try {
                 checkpoints.save(*renderer);

@@ -11,6 +11,8 @@
 // mean square of true by stated error is 1.5 after 16 passes and 1.0 without the largest thousandth of the
 // pixels.
 #pragma once
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -57,7 +59,8 @@ struct ErrorGoal {
     uint64_t next_look = 16;  // passes
     bool is_due(uint64_t passes) const { return passes >= next_look; }
     bool look(uint64_t passes, const RelativeError& error) {
-        next_look = passes + passes / 8 + 1;
+        next_look =
+            std::min(passes + passes / 8 + 1, std::bit_ceil(passes + 1));  // where Sobol' samples pay off
         return error.bound() <= goal;
     }
 };

@@ -49,6 +49,20 @@ TEST_CASE("a line tells passes, error, rays a second, elapsed and left") {
     CHECK(progress_line({.passes = 1}) == "1 pass · 0.0 s");
 }
 
+TEST_CASE(
+    "a render that may end goes on to a power of two passes where that takes less than a tenth more time") {
+    CHECK(passes_to_end_at(59, 0) == 64);
+    CHECK(passes_to_end_at(58, 0) == 58);  // six more are more than a tenth
+    CHECK(passes_to_end_at(64, 0) == 64);
+    CHECK(passes_to_end_at(65, 0) == 65);
+    CHECK(passes_to_end_at(59, 40) == 59);  // this run made but 19 of them
+    CHECK(passes_to_end_at(1, 0) == 1);
+    const RenderStatus status{.passes = 60, .seconds = 5, .seconds_goal = 5, .even_passes = 64};
+    CHECK(progress_line(status).starts_with("60 passes (on to 64, a power of two)"));
+    CHECK(fraction_done(status) == doctest::Approx(60.0 / 64));
+    CHECK(*seconds_left(status) == doctest::Approx(5 * 4.0 / 60));
+}
+
 TEST_CASE("a bar never fills more than the columns of the terminal") {
     RenderStatus status{.passes = 64, .seconds = 75, .rays = 90e6, .error = 0.01234, .passes_goal = 128};
     CHECK(progress_bar(status, 120).starts_with("[###############---------------] 64/128 passes"));
