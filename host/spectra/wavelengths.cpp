@@ -64,8 +64,8 @@ glm::uvec2 sobol(uint32_t index) {
 
 double wavelength_pdf(double nm) { return distribution().pdf(cell_of(nm)); }
 
-// Two numbers, stratified together: where within a quarter the four lie, and in which quarter the hero is. So
-// both the four and the hero alone are spread evenly over the passes.
+// Two numbers, stratified together: where within a quarter the four lie, and in which quarter the first is. So
+// both the four and each path's hero alone are spread evenly over the passes.
 Wavelengths choose_wavelengths(uint64_t pass, uint32_t seed) {
     const uint64_t shift = hash(uint64_t(seed) << 1 | (pass & 1));
     const glm::uvec2 point = sobol(uint32_t(pass >> 1)) ^ glm::uvec2(uint32_t(shift), uint32_t(shift >> 32));

@@ -15,7 +15,8 @@ constexpr int dominant_nm[3] = {611, 549, 464};
 
 // Twin of struct Wavelengths in shaders/features/spectrum.glsl.
 struct Wavelengths {
-    glm::vec4 nm;      // the first is the hero: the only one left behind dispersion
+    glm::vec4 nm;      // of which each path has one for its hero, counted from the first: that is left behind
+                       // dispersion
     glm::vec3 rgb[4];  // what one in each contributes to the pixel: density, mean and even_luminance included
     glm::vec4 share;   // … to its radiance, W / (m² sr)
 };

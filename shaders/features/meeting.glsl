@@ -37,7 +37,7 @@ Connection no_connection(vec3 wi) {
     c.wi = wi;
     return c;
 }
-#define choose_vertex(random, p, s) no_connection(vec3(0, 0, 1))
+#define choose_vertex(path, p, s) no_connection(vec3(0, 0, 1))
 #define connects_to(c, here) false
 #define forward_point(c, s) s
 #define connect_vertices(path, p, s, mis, c, here, there, pair) no_shadow_ray()

@@ -48,12 +48,6 @@ float connects(Path path) { return (path.flags & PATH_STARTS) != 0u ? 1.0 : CONN
 
 // Flags of a light vertex.
 const uint VERTEX_STARTS = 0x20000000u;      // the first of its path
-const uint VERTEX_MONOCHROME = 0x40000000u;  // its path carries the hero wavelength only
-
-// Both paths alone would have their hero stand for all wavelengths; joined they do so once.
-float meeting_share(Path path, uint vertex_flags) {
-    return is_monochrome(path) && (vertex_flags & VERTEX_MONOCHROME) != 0u ? 0.25 : 1.0;
-}
 
 #if BIDIRECTIONAL
 #if FORWARD

@@ -22,7 +22,7 @@ const bool HAS_TINTS = HAS_TEXTURES == 1 || HAS_VERTEX_ATTRIBUTES == 1;  // some
 
 // Twin of struct Wavelengths in host/spectra/wavelengths.h.
 struct Wavelengths {
-    vec4 nm;      // the first is the hero, the only one left behind dispersion
+    vec4 nm;
     vec3 rgb[4];  // what a radiance of one contributes to the pixel
     vec4 share;   // the same to the radiance of the pixel over all wavelengths, W / (m^2 sr)
 };
@@ -134,6 +134,14 @@ Spectrum untinted_value(SpectrumRef ref) { return ref.rgb; }
 Spectrum spectrum_value(SpectrumRef ref) { return ref.rgb; }
 void scale_spectrum(inout SpectrumRef ref, vec3 color) { ref.rgb *= color; }
 
+#endif
+
+// The lane of the hero, the only wavelength left behind dispersion, of the path that the invocation is at (features/dispersion.glsl).
+#if HAS_DISPERSION
+uint hero = 0u;
+float of_hero(Spectrum s) { return s[hero]; }
+#else
+#define of_hero(s) (s).x
 #endif
 
 bool is_black(Spectrum s) { return max_component(s) <= 0.0; }

@@ -42,7 +42,7 @@ Spectrum medium_spectral_ior(uint ref, vec3 position) {
 }
 
 // Of the hero wavelength; colours have one index.
-float medium_ior(uint ref, vec3 position) { return medium_spectral_ior(ref, position).x; }
+float medium_ior(uint ref, vec3 position) { return of_hero(medium_spectral_ior(ref, position)); }
 
 Passage medium_pass(uint ref, MediumRay ray, uint seed) {
     Passage result = Passage(Spectrum(1), 1.0);

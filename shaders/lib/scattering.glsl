@@ -58,8 +58,8 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, Crossing sides, boo
     if (HAS_INTERFACES == 1) {
         Spectrum above = medium_spectral_ior(sides.above.medium, p.position);
         Spectrum below = medium_spectral_ior(sides.below.medium, p.position);
-        s.context.ior_above = above.x;
-        s.context.ior_below = below.x;
+        s.context.ior_above = of_hero(above);
+        s.context.ior_below = of_hero(below);
         bool separates = (m.flags & MATERIAL_SEPARATES_MEDIA) != 0u;
         s.disperses = separates && !(has_one_index(above) && has_one_index(below));
     }

@@ -29,7 +29,7 @@ bool fish_eye_bends(FishEye r) { return true; }
 
 vec3 fish_eye_bending(FishEye r, vec3 position) {
     vec3 d = position - r.center.position;
-    float profile = fish_eye_profile(r, d), n = untinted_value(r.ior).x * profile;
+    float profile = fish_eye_profile(r, d), n = of_hero(untinted_value(r.ior)) * profile;
     return (-2.0 * n * n * profile / (r.radius * r.radius)) * d;
 }
 

@@ -45,7 +45,7 @@ bool gradient_index_bends(GradientIndex r) { return r.radial != vec3(0) || r.axi
 
 vec3 gradient_index_bending(GradientIndex r, vec3 position) {
     vec3 d = position - r.center.position;
-    float z = dot(d, r.axis.unit), ior = untinted_value(r.ior).x;
+    float z = dot(d, r.axis.unit), ior = of_hero(untinted_value(r.ior));
     vec3 across = d - z * r.axis.unit;
     vec3 profile = gradient_index_profile(r, dot(across, across), z);
     return ior * ior * (profile.y * across + profile.z * r.axis.unit);

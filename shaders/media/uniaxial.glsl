@@ -22,7 +22,7 @@ struct Uniaxial {
 };
 
 Crystal uniaxial_crystal(Uniaxial r) {
-    return Crystal(untinted_value(r.ior_ordinary).x, untinted_value(r.ior_extraordinary).x, r.axis.unit);
+    return Crystal(of_hero(untinted_value(r.ior_ordinary)), of_hero(untinted_value(r.ior_extraordinary)), r.axis.unit);
 }
 
 // On average over directions of vibration.

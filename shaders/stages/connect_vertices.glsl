@@ -23,10 +23,9 @@ Connection no_connection(vec3 wi) {
 // `here`: scattering at the backward vertex towards the forward one.
 bool connects_to(Connection c, Scattering here) { return c.is_there && !is_black(here.value); }
 
-// `random`: of the path.
-Connection choose_vertex(inout Sampler random, SurfacePoint p, ScatteringPoint s) {
+Connection choose_vertex(inout Path path, SurfacePoint p, ScatteringPoint s) {
     Connection c;
-    vec2 u = sample_2d(random);
+    vec2 u = sample_2d(path.random);
     uvec2 end = path_ends[min(uint(u.x * float(forward_pass.count)), forward_pass.count - 1u)];
     c.vertices = end.y;
     uint index = end.x;
@@ -37,7 +36,7 @@ Connection choose_vertex(inout Sampler random, SurfacePoint p, ScatteringPoint s
     c.distance = sqrt(dot(d, d));
     c.direction = d / c.distance;
     c.wi = c.direction * s.frame;
-    c.is_there = end.y > 0u && c.distance > 0.0 && is_on_one_side(s, c.direction, c.wi);
+    c.is_there = end.y > 0u && c.distance > 0.0 && is_on_one_side(s, c.direction, c.wi) && shares_hero(path, c.y);
     if (!c.is_there) c.wi = vec3(0, 0, 1);
     return c;
 }
@@ -52,7 +51,9 @@ ScatteringPoint forward_point(Connection c, ScatteringPoint s) {
         there = volume_scattering_point(c.y.position, -light_direction, surroundings_of(c.y.normal), true);
     } else {
         SurfacePoint q = locate(Hit(0.0, c.y.uv, c.y.primitive, c.y.instance), c.y.position, -light_direction);
+        uint own = take_hero_of(c.y);
         there = shaded_point(q, -light_direction, crossing_of_vertex(c.y, q.material, around), true);
+        take_hero(own);
     }
     if (!is_consistent(there, -c.direction)) flatten(there, -light_direction);
     return there;
@@ -87,8 +88,7 @@ ShadowRay connect_vertices(Path path, SurfacePoint p, ScatteringPoint s, VertexM
 
     float flux = forward_pass.path_flux * float(forward_pass.count) * float(c.vertices);  // one path and vertex stand for all
     Spectrum contribution = path.throughput * here.value * c.y.throughput * away.value *
-                            (adjoint_correction(there, light_direction, -c.direction) * flux / distance_squared *
-                             meeting_share(path, c.y.previous));
+                            (adjoint_correction(there, light_direction, -c.direction) * flux / distance_squared);
     ShadowRay shadow =
         shadow_ray(path, p, s, here, c.direction, c.distance, contribution, (by_backward + by_forward) / CONNECTION_SHARE);
     polarize_end(shadow, c.y, there, away.mueller);

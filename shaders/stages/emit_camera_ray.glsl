@@ -1,6 +1,7 @@
 // Starts a backward path: a point of the pixel (box filter), the receiver's ray through it.
 #include "features/bending.glsl"
 #include "features/bias.glsl"
+#include "features/dispersion.glsl"
 #include "features/polarization.glsl"
 #include "features/start_media.glsl"
 #include "features/weights.glsl"
@@ -25,6 +26,7 @@ Path emit_camera_ray(uint receiver, uvec2 pixel, uvec2 size, uint sample_index, 
     path.depth = 0u;
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
     if (HAS_RECEPTORS == 1 && ray.at_receptor) path.flags |= PATH_TO_RECEPTOR;
+    start_hero(path, path.random.pixel_hash >> 8);
     start_rows(path, receiver);
     start_mode(path);
     start_bending(path);

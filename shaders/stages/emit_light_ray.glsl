@@ -1,5 +1,6 @@
 // Starts a forward path: a light chosen by its power, a ray that it sends. Throughput 0 where there is none.
 #include "features/bending.glsl"
+#include "features/dispersion.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
 #include "features/receptors.glsl"
@@ -28,6 +29,7 @@ Path emit_light_ray(uint index) {
     path.flags = PATH_STARTS;
     path.vertices = uvec2(NO_RECORD, 0u);
     start_smooth(path, ray.is_delta);
+    start_hero(path, sample_seed(path.random));
     start_stokes(path, light);
     start_mode(path);
     start_bending(path);

@@ -24,7 +24,7 @@ ShadowRay meet_vertices(inout Path path, SurfacePoint p, ScatteringPoint s, Vert
             if (!next_candidate(merging.query, index, position)) break;
             y = light_vertices[index];
             at = s;
-            if (!merges_with(merging, p, s, y, wi)) continue;
+            if (!merges_with(merging, path, p, s, y, wi)) continue;
         }
         Scattering pair = scattering_pair(at, wi);
         if (connects) shadow = connect_vertices(path, p, s, mis, c, here, there, pair);

@@ -44,7 +44,7 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
     uint index;
     while (next_on_beam(query, index)) {
         LightVertex y = light_vertices[index];
-        if (!is_in_volume(y) || y.normal != path.around.medium) continue;
+        if (!is_in_volume(y) || y.normal != path.around.medium || !shares_hero(path, y)) continue;
         vec3 d = y.position - path.origin;
         float t = dot(d, path.direction);
         vec3 aside = d - t * path.direction;
@@ -59,7 +59,7 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
         VertexMis mis = vertex_mis(met, volume_point(y.position, path.direction), s);
         if (!(mis.merging > 0.0)) continue;
         float others = connects(path) * mis.vcm + pdf * mis.vc + CONNECTION_SHARE * y.vcm + pdf * y.vc;
-        float weight = meeting_share(path, y.previous) * mis.merging / (mis.merging + others);
+        float weight = mis.merging / (mis.merging + others);
         if (t > sure) weight /= max(dot(share, passage_along(path, t - sure).transmittance), 1e-30);
         Spectrum brought = passage.transmittance * y.throughput * value * (weight / (PI * square(radius)));
         Received light =

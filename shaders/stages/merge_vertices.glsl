@@ -32,10 +32,10 @@ void begin_merging(out Merging m, SurfacePoint p) {
 }
 
 // Does the vertex merge, that lies within the radius? Then `wi` is the direction, in the frame, that its light comes from.
-bool merges_with(Merging m, SurfacePoint p, ScatteringPoint s, LightVertex y, out vec3 wi) {
+bool merges_with(Merging m, Path path, SurfacePoint p, ScatteringPoint s, LightVertex y, out vec3 wi) {
     vec3 light_direction = decode_octahedral(y.direction);
     wi = light_direction * s.frame;
-    return lies_on_same(p, s, y, m.radius) && is_on_one_side(s, light_direction, wi);
+    return shares_hero(path, y) && lies_on_same(p, s, y, m.radius) && is_on_one_side(s, light_direction, wi);
 }
 
 void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s, VertexMis mis, LightVertex y, Scattering pair) {
@@ -45,7 +45,6 @@ void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s,
     float reverse = pair.pdf_reverse * frame_probability(s, light_direction, -path.direction);
     float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
     Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));
-    brought *= meeting_share(path, y.previous);
     Received light = merged_light(brought, path, s, pair.mueller, y);
     if (2.0 * dot(d, d) < square(m.radius)) m.inner += light;
     else m.outer += light;

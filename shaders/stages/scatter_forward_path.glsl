@@ -75,6 +75,7 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
 // Returns whether the path goes on; the shadow ray is to be traced in either case.
 bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Counters counters, out ShadowRay shadow) {
     shadow = no_shadow_ray();
+    follow_hero(path);
     float carried = luminance(path.throughput);
     Spectrum before = path.throughput;
     bool scatters = cross_medium(path, hit);

@@ -62,6 +62,7 @@ ShadowRay connect_light(Path path, SurfacePoint p, ScatteringPoint s, LightSampl
 // Returns whether the path goes on; the shadow rays are to be traced in either case.
 bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowRay shadow, out ShadowRay vertex_shadow) {
     shadow = vertex_shadow = no_shadow_ray();
+    follow_hero(path);
     Spectrum carried = path.throughput;
     bool scatters = cross_and_merge(path, hit);
     Arrival a = arrive(path, carried, hit, scatters, counters);
@@ -85,7 +86,7 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     vec3 wi = l.direction * s.frame;
     vec3 u = sample_3d(path.random);
     Connection connection = no_connection(wi);
-    if (!is_delta) connection = choose_vertex(path.random, p, s);
+    if (!is_delta) connection = choose_vertex(path, p, s);
     SurfaceEvent event = scattering_event(s, wi, connection.wi, SHADOW_RAYS, u);
     // No light where the shading normal and the surface disagree on which side it is.
     if (HAS_LIGHTS)

@@ -18,8 +18,7 @@ void store_vertex(inout Path path, uint path_index, SurfacePoint p, ScatteringPo
     v.primitive = in_volume(s) ? NO_RECORD : hit.primitive;
     keep_medium_above(v, s.sides.above.medium);
     uint starts = (path.flags & PATH_STARTS) != 0u ? VERTEX_STARTS : 0u;
-    uint monochrome = (path.flags & PATH_MONOCHROME) != 0u ? VERTEX_MONOCHROME : 0u;
-    v.previous = light_vertex_link(path.vertices.x, starts | monochrome | (merges ? LIGHT_VERTEX_MERGES : 0u));
+    v.previous = light_vertex_link(path.vertices.x, starts | (merges ? LIGHT_VERTEX_MERGES : 0u));
     uint place = append_light_vertex(v);
     if (place == NO_LIGHT_VERTEX) return;  // the host repeats the pass with fewer paths
     float radius = merge_radius(p.position) * (mis.along ? BEAM_CELL_SCALE : 1.0);

@@ -2,6 +2,7 @@
 // the angles at which a prism sends them.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -221,4 +222,29 @@ TEST_SUITE("long") {
         c.backward = 2048, c.forward = 512, c.bidirectional = 256, c.largest_error = 0.01;
         check_against_backward(scene, c);
     }
+}
+
+TEST_CASE("dispersion: the paths of one pass have four hues behind glass, not one") {
+    SceneBuilder s;
+    s.medium("glass", {{"ior", {{"cauchy", {1.5, 0.01}}}}});
+    s.sphere(1, s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}), at(0, 0, 0));
+    s.environment({1, 1, 1});
+    s.orthographic(0.5, at(0, 0, 5));
+    const Estimates e = render_estimates(s.import(), {.width = 16, .height = 16, .passes = 1, .seeds = 1});
+    int of_hero[4] = {};
+    std::vector<double> hues;  // ratios of red to the sum of magnitudes, of the heroes found so far
+    for (size_t i = 0; i < e.mean.size(); i += 3) {
+        const double sum = std::abs(e.mean[i]) + std::abs(e.mean[i + 1]) + std::abs(e.mean[i + 2]);
+        const auto known = std::find_if(hues.begin(), hues.end(),
+                                        [&](double hue) { return std::abs(hue - e.mean[i] / sum) < 1e-3; });
+        if (known == hues.end()) {
+            hues.push_back(e.mean[i] / sum);
+            REQUIRE(hues.size() <= 4);
+            ++of_hero[hues.size() - 1];
+        } else {
+            ++of_hero[known - hues.begin()];
+        }
+    }
+    // 64 of 256 each; six standard deviations.
+    for (int count : of_hero) CHECK(std::abs(count - 64) < 42);
 }
