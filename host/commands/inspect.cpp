@@ -80,6 +80,11 @@ int inspect_command(const InspectOptions& options) {
             "positions only");
     feature(f.textures, "textures", "materials use images", "no material uses an image");
     feature(f.normal_maps, "normal maps", "a material has one", "no material has one");
+    feature(f.shading_normals, "shading normals", "some normals are not those of their triangles",
+            "all normals are those of the surface");
+    feature(f.twins, "twins", "two sheets at one place face apart", "no two sheets at one place face apart");
+    feature(f.emission_maps, "emission maps", "textures or alpha make parts of lights brighter than others",
+            "no texture or alpha makes parts of lights brighter than others");
     feature(f.spectral, "spectral", "a value is a spectrum: paths carry four wavelengths",
             "no value is a spectrum: paths carry three channels");
     feature(f.dispersion, "dispersion", "a refractive index depends on the wavelength",

@@ -38,13 +38,6 @@ int wrap_texel(int i, int size, Wrap wrap) {
 
 }  // namespace
 
-glm::vec3 mean_color(const ImageDescription& image) {
-    glm::dvec3 sum(0);
-    const size_t count = size_t(image.width) * image.height;
-    for (size_t i = 0; i < count; ++i) sum += linear_texel(image, i);
-    return glm::vec3(sum / double(std::max<size_t>(count, 1)));
-}
-
 EmissionTexture::EmissionTexture(const ImageDescription& image, const TextureUse& use)
     : use_(use),
       width_(int(image.width)),

@@ -8,9 +8,6 @@
 
 namespace etendue {
 
-// Mean linear color of an image, over all texels.
-glm::vec3 mean_color(const ImageDescription& image);
-
 class EmissionTexture {
   public:
     EmissionTexture(const ImageDescription& image, const TextureUse& use);

@@ -60,6 +60,7 @@ void read_class(const std::string& text, ClassInfo& info) {
     HeadComment head = head_comment(text);
     info.summary = std::move(head.summary), info.example = std::move(head.example);
     info.says_polarization = text.find(info.name + "_mueller(") != std::string::npos;
+    info.says_coverage = text.find(info.name + "_coverage(") != std::string::npos;
     info.is_crystal = text.find(info.name + "_crystal(") != std::string::npos;
     info.has_aperture = text.find("#define " + info.name + "_HAS_APERTURE") != std::string::npos;
     info.has_receptor = text.find(info.name + "_receptor(") != std::string::npos;
@@ -296,19 +297,22 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
                          const std::map<std::string, ClassConstants>& constants) {
     // A kernel for one class of surfaces sets ONLY_SURFACE_CLASS to its tag: the dispatch then has one case.
     // MET_SURFACE_CLASSES are those between whose directions it evaluates: all where vertices are connected.
-    std::string rows, one;
+    // COVERED_SURFACE_CLASSES are those of which a part may not be there.
+    std::string rows, one, covered;
     for (const ClassInfo* info : classes) {
         const std::string row = fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
         one += fmt::format("#if ONLY_SURFACE_CLASS == {}\n#define {}(X){}\n#endif\n", info->tag,
                            interface.table, row);
         rows += row;
+        if (info->says_coverage) covered += row;
     }
     std::string text = fmt::format("#define {}(X){}\n", interface.table, rows);
     if (interface.interface == Interface::surface)
         text = fmt::format(
             "#ifdef ONLY_SURFACE_CLASS\n{}#else\n{}#endif\n"
-            "#if CONNECT_VERTICES\n#define MET_{}(X){}\n#else\n#define MET_{} {}\n#endif\n",
-            one, text, interface.table, rows, interface.table, interface.table);
+            "#if CONNECT_VERTICES\n#define MET_{}(X){}\n#else\n#define MET_{} {}\n#endif\n"
+            "#define COVERED_{}(X){}\n",
+            one, text, interface.table, rows, interface.table, interface.table, interface.table, covered);
     for (const ClassInfo* info : classes) {
         const auto known = constants.find(info->name);
         if (known != constants.end()) text += known->second.macros;

@@ -56,6 +56,7 @@ struct ClassInfo {
     std::string summary;             // the comment at the head of the file, without the example
     std::string example;             // as it stands there, JSON; may be empty
     bool says_polarization = false;  // NAME_mueller is there
+    bool says_coverage = false;      // NAME_coverage is there
     bool is_crystal = false;         // NAME_crystal is there: it refracts doubly
     bool has_aperture = false, has_receptor = false,
          is_far = false;               // of receivers (interfaces/receiver.glsl)

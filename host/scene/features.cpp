@@ -8,8 +8,8 @@ namespace etendue {
 
 Features Features::everything() {
     Features f;
-    f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.textures = true;
-    f.media = f.scattering = f.bending = f.interfaces = f.straight = f.light_tree = true;
+    f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.shading_normals = f.textures = true;
+    f.media = f.scattering = f.bending = f.interfaces = f.straight = f.coverage = f.emission_maps = f.twins = f.light_tree = true;
     f.general_mueller = f.body_mueller = f.crystals = true;
     f.apertures = f.far_receivers = f.receptors = true;
     f.body_count = most_bodies;
@@ -30,6 +30,7 @@ std::string Features::defines() const {
     define("HAS_UNROLLED_TRAVERSAL", unrolled_traversal);
     define("HAS_VERTEX_ATTRIBUTES", vertex_attributes);
     define("HAS_NORMAL_MAPS", normal_maps);
+    define("HAS_SHADING_NORMALS", shading_normals);
     define("HAS_TEXTURES", textures);
     define("HAS_MEDIA", media);
     define("HAS_SCATTERING", scattering);
@@ -38,6 +39,9 @@ std::string Features::defines() const {
     define("HAS_PRIORITIES", body_count > 0);
     if (body_count > 0) define("BODY_COUNT", body_count);
     define("HAS_STRAIGHT", straight);
+    define("HAS_COVERAGE", coverage);
+    define("HAS_EMISSION_MAPS", emission_maps);
+    define("HAS_TWINS", twins);
     define("INDEPENDENT_SAMPLES", independent_samples);
     define("SPECTRAL", spectral);
     define("HAS_POLARIZATION", polarization);

@@ -16,6 +16,7 @@ struct Features {
     bool unrolled_traversal = false;  // so few primitives that straight code tests them all
     bool vertex_attributes = false;   // normals, tangents, texture coordinates or colors
     bool normal_maps = false;
+    bool shading_normals = false;  // some normals are not those of the surface
     bool textures = false;
     bool media = false;             // some medium absorbs or scatters
     bool scattering = false;        // some medium scatters
@@ -24,6 +25,9 @@ struct Features {
     bool interfaces = false;        // some surface separates media: paths keep track of where they are
     uint32_t body_count = 0;        // materials with a priority: paths count the bodies that they are inside
     bool straight = false;          // some surface lets light pass straight on: shadow rays go through
+    bool emission_maps = false;     // some light is sampled by how bright its parts are
+    bool twins = false;             // some sheets are two triangles, one for each side
+    bool coverage = false;          // some surface emits and is there in part
     bool spectral = false;          // paths carry wavelengths instead of colours
     bool polarization = false;      // paths carry Stokes vectors
     bool polarized_lights = false;  // some light is polarized from the start

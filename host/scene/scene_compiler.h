@@ -1,7 +1,8 @@
 // Builds a Scene from its description, step by step; each step needs what the ones before it made. Internal
 // to compile_scene: the steps stand in scene.cpp, scene_phases.cpp, scene_spectra.cpp, scene_materials.cpp,
-// scene_geometry.cpp and scene_lights.cpp.
+// scene_geometry.cpp, scene_lights.cpp and scene_emission.cpp.
 #pragma once
+#include "host/lights/emission_map.h"
 #include "host/lights/light_tree.h"
 #include "host/scene/scene.h"
 #include "host/scene/scene_memory.h"
@@ -10,7 +11,7 @@ namespace etendue {
 
 // Twin of struct Material in shaders/lib/materials.glsl; a test compares the layouts.
 struct MaterialRecord {
-    SpectrumRef emission, mean_emission;
+    SpectrumRef emission;
     uint32_t surface, inside, outside, flags, emission_texture, normal_texture;
     float normal_scale;
     uint32_t body;
@@ -78,7 +79,6 @@ class SceneCompiler {
     void check_crystal_face(const MaterialDescription& m);
     void add_textures();
 
-    glm::vec3 mean_image_color(uint32_t image);
     MeasuredRef add_measured(const std::filesystem::path& file);
     uint32_t add_mueller_table(const std::filesystem::path& file);
     void upload_measured();
@@ -99,6 +99,13 @@ class SceneCompiler {
     void name_lights(const std::map<uint32_t, uint32_t>& positions);
     std::vector<LightBounds> run_measurement();
     void scale_powers(std::vector<LightBounds>& bounds);
+
+    // scene_emission.cpp
+    std::vector<uint32_t> emission_textures(uint32_t material);
+    double texel_edge(const PrimitiveRecord& p, const std::vector<uint32_t>& textures) const;
+    bool emission_varies();
+    void map_emission();
+    void shrink_to_lit(std::vector<LightBounds>& bounds) const;
 
     template <class T>
     void upload(const std::string& name, const std::vector<T>& data) {

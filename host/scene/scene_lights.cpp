@@ -72,6 +72,7 @@ void SceneCompiler::add_lights() {
     lights_ = references(Interface::light, all);
     first_area_light_ = uint32_t(infinite.size() + finite.size());
     out_.lights = lights_.size();
+    out_.features.emission_maps = emission_varies();
     out_.features.light_count = uint32_t(lights_.size());
     // A number in kernels: where places vary it grows in steps, so that most edits leave it as it is.
     out_.features.scene_radius = options_.varying.count("places") && out_.radius > 0
@@ -131,7 +132,9 @@ void SceneCompiler::measure_lights() {
         name_lights({});
         return;
     }
+    map_emission();
     std::vector<LightBounds> bounds = run_measurement();
+    shrink_to_lit(bounds);
     scale_powers(bounds);
 
     std::vector<uint32_t> order(lights_.size());

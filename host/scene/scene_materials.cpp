@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "host/error.h"
-#include "host/lights/emission_texture.h"
 #include "host/scene/scene_compiler.h"
 #include "host/scene/scene_files.h"
 
@@ -58,7 +57,7 @@ void SceneCompiler::add_materials() {
             record.normal_texture =
                 resolver_.texture(m.normal_texture, false, m.surface.where + "/normalTexture");
             record.normal_scale = m.normal_texture.value("scale", 1.0f);
-            out_.features.normal_maps = true;
+            out_.features.normal_maps = out_.features.shading_normals = true;
         }
         if (m.emission) fill_emission(*m.emission, record);
         record.surface = record.body = no_record;
@@ -188,23 +187,16 @@ void SceneCompiler::ask_opacity() {
         else
             out_.features.straight = true;
         if (is_opaque[i] & 2) materials_[i].flags |= blocks;
+        out_.features.coverage |= in_.materials[i].emission && !(is_opaque[i] & 1) &&
+                                  find_class(Interface::surface, in_.materials[i].surface).says_coverage;
     }
 }
 
 void SceneCompiler::fill_emission(const EmissionDescription& e, MaterialRecord& record) {
     const SpectralValue value = emitted_spectrum(e);
     if (value.least() < 0) fail_input("{}: emission must not be negative", message_place(in_, e.where));
-    record.emission = record.mean_emission = {value.rgb, add_spectrum(value, SpectralKind::radiance)};
-    if (e.texture.is_object()) {
-        record.emission_texture = resolver_.texture(e.texture, true, e.where);
-        record.mean_emission.rgb *= mean_image_color(textures_[record.emission_texture].image);
-    }
-}
-
-glm::vec3 SceneCompiler::mean_image_color(uint32_t image) {
-    const auto [place, is_new] = memory_.mean_colors.try_emplace(image);
-    if (is_new) place->second = mean_color(in_.images[image]);
-    return place->second;
+    record.emission = {value.rgb, add_spectrum(value, SpectralKind::radiance)};
+    if (e.texture.is_object()) record.emission_texture = resolver_.texture(e.texture, true, e.where);
 }
 
 void SceneCompiler::add_textures() {

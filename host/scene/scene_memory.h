@@ -15,6 +15,7 @@
 #include "host/mie/mie_table.h"
 #include "host/scene/classes.h"
 #include "host/scene/density_bricks.h"
+#include "host/lights/emission_map.h"
 #include "host/lights/environment_map.h"
 #include "host/scene/features.h"
 #include "host/scene/texture_pack.h"
@@ -54,12 +55,16 @@ struct SceneMemory {
 
     std::vector<TextureUse> texture_uses;  // that the packed textures are of
     uint32_t texture_formats = 0;
-    std::map<uint32_t, glm::vec3> mean_colors;  // of images
     struct LitTriangles {                       // what drop_dark_triangles came to
         uint64_t key = 0;
         std::vector<TextureUse> textures;
         std::vector<uint32_t> primitives;
     } lit;
+    struct EmittingParts {  // what map_emission came to
+        uint64_t key = 0;
+        std::vector<TextureUse> textures;
+        EmissionMaps maps;
+    } emission;
 
     // Of all that: scenes share them, so what has changed gets a new buffer.
     std::map<std::string, std::shared_ptr<Buffer>> buffers;

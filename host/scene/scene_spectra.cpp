@@ -41,8 +41,7 @@ void SceneCompiler::scale_emission(MaterialRecord& record, float scale) {
     value.rgb *= scale;
     if (value.table) value.table = *value.table * scale;
     record.emission.rgb *= scale;
-    record.mean_emission.rgb *= scale;
-    record.emission.table = record.mean_emission.table = add_spectrum(value, SpectralKind::radiance);
+    record.emission.table = add_spectrum(value, SpectralKind::radiance);
 }
 
 // Last of all: what measures lights and materials does so in colours.

@@ -67,6 +67,18 @@
 #ifndef HAS_PRIORITIES
 #define HAS_PRIORITIES 0
 #endif
+#ifndef HAS_SHADING_NORMALS
+#define HAS_SHADING_NORMALS 0
+#endif
+#ifndef HAS_TWINS
+#define HAS_TWINS 0
+#endif
+#ifndef HAS_EMISSION_MAPS
+#define HAS_EMISSION_MAPS 0
+#endif
+#ifndef HAS_COVERAGE
+#define HAS_COVERAGE 0
+#endif
 #ifndef HAS_STRAIGHT
 #define HAS_STRAIGHT 0
 #endif

@@ -1,4 +1,15 @@
 // Normals, tangents, texture coordinates and colours at the vertices of triangles.
+#if HAS_VERTEX_ATTRIBUTES || HAS_EMISSION_MAPS
+// Barycentric coordinates of a point on the triangle.
+vec3 triangle_weights(Triangle r, vec3 position) {
+    vec3 e1 = r.v1 - r.v0, e2 = r.v2 - r.v0, d = position - r.v0;
+    vec3 n = cross(e1, e2);
+    float inverse = 1.0 / dot(n, n);
+    float b1 = dot(cross(d, e2), n) * inverse, b2 = dot(cross(e1, d), n) * inverse;
+    return vec3(1.0 - b1 - b2, b1, b2);
+}
+#endif
+
 #if HAS_VERTEX_ATTRIBUTES
 struct Vertex {
     vec3 normal;   // unit; zero = take the geometric one
@@ -37,17 +48,20 @@ void interpolate_attributes(inout SurfacePoint s, Triangle r, vec2 uv, inout vec
 
 // Texture coordinates of a point on the triangle.
 void triangle_uv(Triangle r, vec3 position, inout vec2 uv0, inout vec2 uv1) {
-    vec3 e1 = r.v1 - r.v0, e2 = r.v2 - r.v0, d = position - r.v0;
-    vec3 n = cross(e1, e2);
-    float inverse = 1.0 / dot(n, n);
-    float b1 = dot(cross(d, e2), n) * inverse, b2 = dot(cross(e1, d), n) * inverse;
-    vec3 weights = vec3(1.0 - b1 - b2, b1, b2);
+    vec3 weights = triangle_weights(r, position);
     uvec3 indices = triangle_indices[attributes_index(r.attributes)];
     Vertex a = vertices[indices.x], b = vertices[indices.y], c = vertices[indices.z];
     uv0 = mat3x2(a.uv0, b.uv0, c.uv0) * weights;
     uv1 = mat3x2(a.uv1, b.uv1, c.uv1) * weights;
 }
+
+vec4 triangle_color(Triangle r, vec3 position) {
+    uvec3 i = triangle_indices[attributes_index(r.attributes)];
+    return mat3x4(unpackUnorm4x8(vertices[i.x].color), unpackUnorm4x8(vertices[i.y].color), unpackUnorm4x8(vertices[i.z].color)) *
+           triangle_weights(r, position);
+}
 #else
 #define interpolate_attributes(s, r, uv, shading)
 #define triangle_uv(r, position, uv0, uv1)
+#define triangle_color(r, position) vec4(1)
 #endif

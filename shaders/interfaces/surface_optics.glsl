@@ -13,6 +13,8 @@
 //                                                                   say false where only a texture makes it so
 //   bool       NAME_is_opaque(R r, SurfaceContext c)                 transparency is zero in every direction, whatever the
 //                                                                   textures and colors
+//   float      NAME_coverage(R r, SurfaceContext c)                  may be left out: part of the surface that is there, of the record as it
+//                                                                   is; the rest lets light pass straight on and emits none
 //   Mueller    NAME_mueller(R r, SurfaceContext c, vec3 from, vec3 to, uint event)   may be left out: what the event (0: one of
 //                                                                   `evaluate`) does to the polarization of light that comes
 //                                                                   from `from` and goes to `to`, both away from the surface
@@ -210,6 +212,17 @@ bool surface_is_delta(uint ref, SurfaceContext c) {
 #undef CASE
     }
     return result;
+// Part of the surface that is there.
+float surface_coverage(uint ref, SurfaceContext c) {
+    float result = 1.0;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_coverage(name##_record(record_index(ref)), c); break;
+        COVERED_SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
 }
 
 bool surface_is_opaque(uint ref, SurfaceContext c) {

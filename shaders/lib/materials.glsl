@@ -5,7 +5,6 @@
 
 struct Material {
     SpectrumRef emission;         // radiance, before the texture
-    SpectrumRef mean_emission;    // radiance, averaged over the texture
     uint surface;                 // RecordRef
     uint inside;                  // medium on the side that the geometric normal points away from; NO_RECORD = vacuum
     uint outside;
@@ -25,8 +24,6 @@ const uint MATERIAL_BLOCKS = 16u;          // nothing passes at all; known only 
 layout(scalar, set = 0) readonly buffer Materials { Material materials[]; };
 
 bool material_emits_both_sides(uint material) { return (materials[material].flags & MATERIAL_EMITS_BOTH_SIDES) != 0u; }
-
-Spectrum material_mean_emission(uint material) { return untinted_value(materials[material].mean_emission); }
 
 // Radiance that leaves a point of the surface, on the side of the geometric normal (front) or the other.
 Spectrum material_emission(uint material, bool front, vec2 uv0, vec2 uv1) {

@@ -33,10 +33,15 @@ struct PrincipledMaterial {
     PrincipledFilm film;
 };
 
+// What alpha leaves of the surface.
+float covered_part(Principled r, float alpha) {
+    alpha = clamp(alpha, 0.0, 1.0);
+    return r.alpha_mode == 0u ? 1.0 : r.alpha_mode == 1u ? (alpha < r.alpha_cutoff ? 0.0 : 1.0) : alpha;
+}
+
 PrincipledMaterial principled_material(Principled r, SurfaceContext c) {
     PrincipledMaterial m;
-    float alpha = clamp(r.base_color.a, 0.0, 1.0);
-    m.coverage = r.alpha_mode == 0u ? 1.0 : r.alpha_mode == 1u ? (alpha < r.alpha_cutoff ? 0.0 : 1.0) : alpha;
+    m.coverage = covered_part(r, r.base_color.a);
     Spectrum specular;
     factors_of_rgb(clamp(r.base_color.rgb, vec3(0), vec3(1)), clamp(r.diffuse_transmission_color, vec3(0), vec3(1)),
                    clamp(r.sheen_color, vec3(0), vec3(1)), max(r.specular_color, vec3(0)), m.color, m.sent, m.sheen, specular);

@@ -32,6 +32,9 @@ vec2 warp_triangle(vec2 u) {
     return u.x < u.y ? vec2(0.5 * u.x, u.y - 0.5 * u.x) : vec2(u.x - 0.5 * u.y, 0.5 * u.y);
 }
 
+// … and back.
+vec2 unwarp_triangle(vec2 b) { return b.x < b.y ? vec2(2.0 * b.x, b.x + b.y) : vec2(b.x + b.y, 2.0 * b.y); }
+
 // x with density proportional to mix(a, b, x) on [0, 1].
 float sample_linear(float a, float b, float u) {
     float scale = max(a, b);

@@ -242,3 +242,6 @@ bool principled_is_delta(Principled r, SurfaceContext c) {
     return textures == NO_RECORD && (m.coverage == 0.0 || (m.smooth_facets && m.opaque == 0.0 && !has_layers));
 }
 bool principled_is_opaque(Principled r, SurfaceContext c) { return r.alpha_mode == 0u && r.transmission == 0.0; }
+float principled_coverage(Principled r, SurfaceContext c) {
+    return covered_part(r, r.base_color.a * c.color.a * texture_value(r.base_color_texture, c.uv0, c.uv1).a);
+}

@@ -70,6 +70,33 @@ inline SceneDescription triangle_scene(bool textured) {
     return scene;
 }
 
+// A bright texel among dim and dark ones, with a turned and repeated map.
+inline SceneDescription texel_scene() {
+    SceneDescription scene = triangle_scene(true);
+    ImageDescription& image = scene.images[0];
+    image.width = image.height = 8;
+    image.rgba32f.assign(4 * 64, 0);
+    for (int i = 0; i < 64; ++i) image.rgba32f[4 * i + 1] = i % 3 == 0 ? 0.0f : 0.2f;
+    for (int c = 0; c < 3; ++c) image.rgba32f[4 * 27 + c] = 1;
+    scene.materials[1].emission->texture["extensions"]["KHR_texture_transform"] = {{"scale", {1.7, 1.3}},
+                                                                                   {"rotation", 0.5}};
+    return scene;
+}
+
+// Alpha by texture, colour of the vertices and factor.
+inline SceneDescription covered_scene() {
+    SceneDescription scene = triangle_scene(true);
+    scene.images[0].rgba32f = {1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 0.1f, 1, 1, 1, 0.5f};
+    scene.materials[1].emission->texture = nullptr;
+    scene.materials[1].double_sided = true;
+    scene.materials[1].surface = {
+        "principled",
+        {{"alpha_mode", 2}, {"base_color", {0, 0, 0, 0.8}}, {"base_color_texture", {{"index", 0}}}},
+        ""};
+    scene.meshes.back().colors = {{1, 1, 1, 1}, {1, 1, 1, 0.5f}, {1, 1, 1, 0.2f}};
+    return scene;
+}
+
 inline SceneDescription light_scene(const std::string& name, const nlohmann::json& parameters) {
     SceneDescription scene = empty_scene();
     PlacedObject light;
@@ -107,8 +134,10 @@ inline std::vector<EmissionCase> emission_cases() {
     const MeasuringDisk in_beam{{0.0002f, 0, -0.5f}, {0, 0, 1}, 0.0006f};
     return {
         {"area", "triangle", triangle_scene(false)},
-        // Its power is estimated from 16 of its points.
-        {"area", "textured triangle", triangle_scene(true), 0.2},
+        // Powers of textures are means over points, 16 of each part that is found to be alike.
+        {"area", "textured triangle", triangle_scene(true), 0.002},
+        {"area", "a bright texel", texel_scene(), 0.01},
+        {"area", "there in part, both sides", covered_scene(), 0.01},
         {"area", "disk, both sides", shape_scene("disk", {{"radius", 0.5}}, squeezed, true)},
         {"area", "rectangle", shape_scene("rectangle", {{"size", {0.8, 0.5}}}, down(0.4))},
         {"area", "sphere", shape_scene("sphere", {{"radius", 0.4}}, down(0.4))},
