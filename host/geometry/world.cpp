@@ -7,6 +7,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "host/error.h"
+#include "host/geometry/twins.h"
 #include "host/scene/records.h"
 
 namespace etendue {
@@ -101,6 +102,9 @@ class Builder {
             PrimitiveRecord p{positions[t.x], mesh.material, positions[t.y], no_record, positions[t.z], 0};
             if (triangle_area_vanishes(p)) continue;
             p.attributes = uint32_t(world_.triangle_indices.size());
+            if (!mesh.normals.empty() && !shading_normals_)
+                for (uint32_t i : {t.x, t.y, t.z})
+                    shading_normals_ |= is_another_normal(p, world_.vertices[first_vertex + i].normal);
             if (keep_indices_)
                 world_.triangle_indices.push_back(attributes ? t + first_vertex : glm::uvec3(0));
             out.push_back(p);
@@ -108,16 +112,32 @@ class Builder {
         world_.triangles += mesh.triangles.size();
     }
 
-    // A tree over `primitives`, which are appended to the world's in leaf order, `order`. Returns the tree's
-    // header.
-    uint32_t add_tree(const std::vector<PrimitiveRecord>& primitives, const std::vector<Box>& boxes,
+    // A tree over `primitives`, which are appended to the world's in leaf order, `order`, and twins behind them.
+    // Returns the tree's header.
+    uint32_t add_tree(const std::vector<PrimitiveRecord>& primitives, std::vector<Box> boxes,
                       std::vector<uint32_t>* order = nullptr) {
+        const std::vector<uint32_t> twins = find_twins(primitives, scene_.materials);
+        std::vector<uint32_t> kept;
+        for (uint32_t i = 0; i < primitives.size(); ++i)
+            if (twins[i] >= i) boxes[kept.size()] = boxes[i], kept.push_back(i);
+        boxes.resize(kept.size());
         const Bvh bvh = build_bvh(boxes, threads_);
         const uint32_t first = uint32_t(world_.primitives.size());
         const uint32_t header = encode_bvh(bvh, first, world_.nodes);
         world_.primitives.reserve(first + primitives.size());
-        for (uint32_t i : bvh.order) world_.primitives.push_back(primitives[i]);
-        if (order) *order = bvh.order;
+        std::vector<uint32_t> all;
+        for (uint32_t i : bvh.order) world_.primitives.push_back(primitives[kept[i]]), all.push_back(kept[i]);
+        world_.twins.resize(first + primitives.size(), no_record);
+        for (uint32_t i = 0; i < kept.size(); ++i) {
+            const uint32_t twin = twins[all[i]];
+            if (twin == no_record) continue;
+            world_.twins[first + i] = uint32_t(world_.primitives.size());
+            PrimitiveRecord p = primitives[twin];
+            turn_to(primitives[all[i]], p, keep_indices_ ? &world_.triangle_indices[p.attributes] : nullptr);
+            world_.primitives.push_back(p), all.push_back(twin);
+            has_twins_ = true;
+        }
+        if (order) *order = std::move(all);
         const double seconds = world_.statistics.seconds + bvh.statistics.seconds;
         if (first == 0) world_.statistics = bvh.statistics;
         world_.statistics.seconds = seconds;
@@ -125,6 +145,8 @@ class Builder {
     }
 
     void keep_indices(bool keep) { keep_indices_ = keep; }
+    bool has_shading_normals() const { return shading_normals_; }
+    bool has_twins() const { return has_twins_; }
 
   private:
     // What transforming to floats has made of a thin triangle; it could be hit by nothing.
@@ -132,10 +154,17 @@ class Builder {
         return p.v0 == p.v1 || p.v1 == p.v2 || p.v0 == p.v2;
     }
 
+    // Whether a vertex normal, of whichever side, is more than 0.0014 rad off that of the triangle.
+    static bool is_another_normal(const PrimitiveRecord& p, const glm::dvec3& normal) {
+        const glm::dvec3 n = glm::cross(glm::dvec3(p.v1 - p.v0), glm::dvec3(p.v2 - p.v0));
+        return normal != glm::dvec3(0) && std::abs(glm::dot(n, normal)) < (1 - 1e-6) * glm::length(n);
+    }
+
     const SceneDescription& scene_;
     World& world_;
     unsigned threads_;
     bool keep_indices_ = false;
+    bool shading_normals_ = false, has_twins_ = false;
 };
 
 }  // namespace
@@ -249,6 +278,9 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
         headers[mesh] = builder.add_tree(triangles, triangle_boxes);
         features.triangles = true;
     }
+    features.shading_normals = builder.has_shading_normals();
+    features.twins = builder.has_twins();
+    if (!features.twins) world.twins.clear();
     for (uint32_t i = 0; i < world.world_primitives; ++i)
         if (primitive_kind(world.primitives[i]) == PrimitiveKind::instance)
             world.primitives[i].v0.x =

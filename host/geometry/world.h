@@ -43,6 +43,7 @@ struct World {
     uint32_t world_primitives = 0;
     // Of the world's primitives: what they are of, counted through the scene's instances and then its shapes.
     std::shared_ptr<const std::vector<uint32_t>> placed;
+    std::vector<uint32_t> twins;  // of each primitive: the other side of its sheet (twins.h), or no_record
     std::vector<glm::uvec4> nodes;
     std::vector<TransformRecord> transforms;
     std::vector<VertexRecord> vertices;

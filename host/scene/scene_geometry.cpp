@@ -24,20 +24,22 @@ void SceneCompiler::add_geometry() {
     World& world = memory_.world;
     if (key != memory_.world_key) {
         memory_.world_key = 0;
-        for (const char* name : {"Nodes", "Primitives", "Vertices", "TriangleIndices", "Transforms"})
+        for (const char* name : {"Nodes", "Primitives", "Vertices", "TriangleIndices", "Transforms", "Twins"})
             memory_.buffers.erase(name);
         memory_.world_features = {};
         memory_.light_positions.clear();
         world = build_world(in_, bounds, refs, threads_, memory_.world_features);
         memory_.unrolled_traversal.clear();
-        if (!has_bodies() && !options_.varying.count("places") && device_.description.compiles_choices)
+        if (!has_bodies() && !memory_.world_features.twins && !options_.varying.count("places") && device_.description.compiles_choices)
             memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
         memory_.world_key = key;
     }
     out_.features.triangles = memory_.world_features.triangles;
     out_.features.shapes = memory_.world_features.shapes;
     out_.features.instances = memory_.world_features.instances;
+    out_.features.twins = memory_.world_features.twins;
     out_.features.vertex_attributes = memory_.world_features.vertex_attributes;
+    out_.features.shading_normals |= memory_.world_features.shading_normals;
     out_.features.unrolled_traversal = !memory_.unrolled_traversal.empty();
     out_.sources.generated["generated/unrolled_traversal.glsl"] = memory_.unrolled_traversal;
     out_.placed = world.placed;
@@ -92,6 +94,7 @@ void SceneCompiler::upload_world() {
     share("Vertices", memory_.world.vertices);
     share("TriangleIndices", memory_.world.triangle_indices);
     share("Transforms", memory_.world.transforms);
+    if (out_.features.twins) share("Twins", memory_.world.twins);
 }
 
 // Of classes with the parameter "resolution".

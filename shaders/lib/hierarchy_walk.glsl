@@ -33,6 +33,7 @@ void traversal_enter(inout Traversal w, uint header, vec3 origin, vec3 direction
 }
 
 #include "features/instances.glsl"
+#include "features/twins.glsl"
 
 void traversal_begin(out Traversal w, vec3 origin, vec3 direction, float t_max, const bool any_hit) {
     w.hit = Hit(t_max, vec2(0), NO_RECORD, NO_RECORD);
@@ -80,6 +81,7 @@ void traversal_step(inout Traversal w, const bool any_hit) {
                                      hit_limit(w.hit), found);
         }
         Hit hit = Hit(found.t, found.uv, index, w.instance);
+        if (HAS_TWINS == 1 && met) show_front(hit, primitive, w.direction);
         if (met && lies_between(hit, w.after, w.hit)) {
             w.hit = hit;
             w.limit = found.t - w.box.start;
