@@ -92,7 +92,8 @@ void cross_crystal(inout SurfaceEvent event, ScatteringPoint s, float u) {
     Wave w = f.waves[wave];
     float kept = f.squared_index * (f.isotropic[0] ? 2.0 : 1.0) / (w.squared_index * (two ? 2.0 : 1.0));
     event.mode = two ? MODE_NONE : (wave & 1u) == 0u ? MODE_ORDINARY : MODE_EXTRAORDINARY;
-    event.next = BsdfSample(frame * w.ray, Spectrum(s.context.importance ? 1.0 : kept), probability,
+    float power = HAS_SHADING_NORMALS == 1 ? abs(s.wo.z) : 1.0;  // see adjoint_correction()
+    event.next = BsdfSample(frame * w.ray, Spectrum(s.context.importance ? power : kept), probability,
                             EVENT_DELTA | (wave < 2u ? EVENT_REFLECT : EVENT_TRANSMIT));
     event.next_pdf_reverse = probability;
     keep_mueller(event.next_mueller, crystal_mueller(f, first, two, s.context.importance, frame[1]));

@@ -40,11 +40,16 @@ struct SurfaceContext {
     float ior_below;
     bool importance;
     mat3 mesh_frame;        // tangent, bitangent and normal that no map has bent, in the local frame
+    MEMBER_IF(HAS_SHADING_NORMALS, vec3 level;)  // normal of the surface itself, in the local frame
 };
 
 // Where no map has bent the frame.
 SurfaceContext unbent_context(vec2 uv0, vec2 uv1, vec4 color, float ior_above, float ior_below, bool importance) {
-    return SurfaceContext(uv0, uv1, color, ior_above, ior_below, importance, mat3(1));
+    SurfaceContext c;
+    c.uv0 = uv0, c.uv1 = uv1, c.color = color, c.ior_above = ior_above, c.ior_below = ior_below, c.importance = importance;
+    c.mesh_frame = mat3(1);
+    MEMBER_IF(HAS_SHADING_NORMALS, c.level = vec3(0, 0, 1);)
+    return c;
 }
 
 // A direction about the normal that no map has bent, in the local frame.
@@ -83,6 +88,7 @@ Mueller unsaid_mueller(vec3 to, uint event) {
 }
 
 #include "generated/surface_classes.glsl"
+#include "features/shading_normals.glsl"
 
 // What the algorithms see of a pair of directions.
 struct Scattering {
@@ -111,7 +117,8 @@ Scattering surface_pair(uint ref, SurfaceContext c, vec3 wo, vec3 wi) {
 #define CASE(tag, Struct, name)                                                  \
     case tag: {                                                                  \
         Struct r = name##_resolve(name##_record(record_index(ref)), c);          \
-        result = scattering_of(name##_evaluate(r, c, wo, wi));                   \
+        EVALUATE(name, r, c, wo, wi, pair);                                      \
+        result = scattering_of(pair);                                            \
         keep_mueller(result.mueller, MUELLER_ALONG(name, r, c, wo, wi, 0u));     \
         break;                                                                   \
     }
@@ -158,10 +165,11 @@ SurfaceEvent surface_event(uint ref, SurfaceContext c, vec3 wo, vec3 wi, vec3 se
 #define CASE(tag, Struct, name)                                                              \
     case tag: {                                                                             \
         Struct r = name##_resolve(name##_record(record_index(ref)), c);                     \
-        result.next = name##_sample(r, c, wo, u);                                           \
+        SAMPLE(name, r, c, wo, u, result.next);                                             \
         for (uint i = 0u; i <= asked; ++i) {                                                \
             vec3 towards = i == asked ? result.next.wi : i == 0u ? wi : second;             \
-            Scattering pair = scattering_of(name##_evaluate(r, c, wo, towards));            \
+            EVALUATE(name, r, c, wo, towards, evaluated);                                   \
+            Scattering pair = scattering_of(evaluated);                                     \
             uint event = i == asked ? result.next.event : 0u;                               \
             keep_mueller(pair.mueller, MUELLER_ALONG(name, r, c, wo, towards, event));      \
             if (i == asked) complete(result, pair);                                         \
@@ -204,14 +212,6 @@ Mueller surface_transparency_mueller(uint ref, SurfaceContext c, vec3 from) {
     return result;
 }
 
-bool surface_is_delta(uint ref, SurfaceContext c) {
-    bool result = true;
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_is_delta(name##_record(record_index(ref)), c); break;
-        SURFACE_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
 // Part of the surface that is there.
 float surface_coverage(uint ref, SurfaceContext c) {
     float result = 1.0;
@@ -223,6 +223,14 @@ float surface_coverage(uint ref, SurfaceContext c) {
     return result;
 }
 
+bool surface_is_delta(uint ref, SurfaceContext c) {
+    bool result = true;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_is_delta(name##_record(record_index(ref)), c); break;
+        SURFACE_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
 }
 
 bool surface_is_opaque(uint ref, SurfaceContext c) {

@@ -51,6 +51,7 @@ ScatteringPoint shaded_point(SurfacePoint p, vec3 direction, Crossing sides, boo
     s.sides = sides;
     s.context = unbent_context(p.uv0, p.uv1, p.color, 1.0, 1.0, importance);
     keep_mesh_frame(s.context, s.frame, unbent);
+    keep_level(s.context, s.normal * s.frame);
     keep_mode(s, MODE_NONE);
     s.phase = NO_RECORD;
     s.extinction = 0.0;
@@ -70,6 +71,7 @@ void flatten(inout ScatteringPoint s, vec3 direction) {
     s.frame = frame_around(s.normal);
     s.wo = -direction * s.frame;
     s.context.mesh_frame = mat3(1);
+    keep_level(s.context, vec3(0, 0, 1));
 }
 
 // Of a backward ray. Seen from a side that the shading normal faces away from, the surface is taken as flat.
@@ -109,12 +111,14 @@ bool is_seen_from(ScatteringPoint s, vec3 direction) {
 }
 
 // What a shading normal does to light that goes on (Veach 1997, section 5.3.2): with it, a surface seen from `direction` is
-// as bright by forward rays as by backward ones.
+// as bright by forward rays as by backward ones. With features/shading_normals.glsl what is scattered holds the cosine of the light
+// about the shading normal already.
 float adjoint_correction(ScatteringPoint s, vec3 light_direction, vec3 direction) {
     vec3 n = s.frame[2];
     if (in_volume(s)) return 1.0;
     float denominator = abs(dot(light_direction, s.normal) * dot(direction, n));
-    return denominator > 0.0 ? abs(dot(light_direction, n) * dot(direction, s.normal)) / denominator : 0.0;
+    float light = HAS_SHADING_NORMALS == 1 ? 1.0 : dot(light_direction, n);
+    return denominator > 0.0 ? abs(light * dot(direction, s.normal)) / denominator : 0.0;
 }
 
 // What a ray is in after it leaves in a world direction.
