@@ -20,7 +20,6 @@ def make_cluster(kind, workers):
         return SSHCluster([hosts[0]] + hosts, worker_options={"nthreads": 1})
     if kind == "slurm":
         from dask_jobqueue import SLURMCluster
-
         cluster = SLURMCluster(cores=os.cpu_count(), processes=1, memory="8GB")  # or as its configuration file says
         cluster.scale(jobs=workers)
         return cluster
@@ -34,8 +33,7 @@ def run_range(program, command, scene, options, first, end, threads):
         part = os.path.join(folder, "part.etd")
         words = [program, command, scene, "--passes", f"{first}:{end}", "--checkpoint", part, "--quiet", *options]
         run = subprocess.run(words, env=environment, capture_output=True, text=True)
-        if run.returncode:
-            raise RuntimeError(run.stderr.strip())
+        if run.returncode: raise RuntimeError(run.stderr.strip())
         return open(part, "rb").read()
 
 
@@ -53,8 +51,7 @@ def main():
     parser.add_argument("--chunk", type=int, default=16, help="passes of a task")
     parser.add_argument("--program", default="etendue")
     a, options = parser.parse_args(words[:split]), words[split + 1:]
-    if (a.passes is None) == (a.error is None):
-        parser.error("one of --passes and --error is wanted")
+    if (a.passes is None) == (a.error is None): parser.error("one of --passes and --error is wanted")
     if "--algorithm" not in options:  # what auto would choose is chosen once, for all workers
         chosen = subprocess.run([a.program, "inspect", a.scene, "--json"], check=True, capture_output=True, text=True)
         options += json.loads(chosen.stdout)["arguments"]
@@ -73,8 +70,8 @@ def main():
             tasks.add(task)
 
     def merge(*more):
-        subprocess.run([a.program, "merge", *parts, "--checkpoint", whole, "-o", a.output, "--stats", stats, "--quiet", *more],
-                       check=True)
+        words = [a.program, "merge", *parts, "--checkpoint", whole, "-o", a.output, "--stats", stats, "--quiet", *more]
+        subprocess.run(words, check=True)
         for part in set(parts) - {whole}:
             os.remove(part)
         parts[:] = [whole]
