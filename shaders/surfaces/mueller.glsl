@@ -39,7 +39,8 @@ Spectrum mueller_transparency(MuellerSheet r, SurfaceContext c, vec3 wo) {
 }
 
 Mueller mueller_mueller(MuellerSheet r, SurfaceContext c, vec3 from, vec3 to, uint event) {
-    if (mueller_is_table(r)) return mueller_of_table(r, from, to);
+    // Nothing passes a table: where light goes straight on, its code is left out.
+    if (mueller_is_table(r) && (event & EVENT_STRAIGHT) == 0u) return mueller_of_table(r, from, to);
     Mueller m = depolarizing();
     m.is_general = true;
     m.from = axis_across(sheet_axis(r.axis), from), m.to = axis_across(sheet_axis(r.axis), to);
