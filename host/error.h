@@ -19,8 +19,8 @@ enum class ExitCode {
 // the direction of text, and bytes that are no UTF-8 become \x1b, byte by byte; a line feed becomes a space.
 std::string printable(const std::string& text);
 
-// `what()` is the whole line to print, printable. For scenes it reads "FILE: JSON POINTER: what is wrong; what
-// is allowed".
+// `what()` is the whole line to print, printable. For scenes it reads "FILE: JSON POINTER: what is wrong;
+// what is allowed".
 class Error : public std::runtime_error {
   public:
     Error(ExitCode code, const std::string& line) : std::runtime_error(printable(line)), code(code) {}

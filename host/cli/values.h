@@ -14,7 +14,7 @@ struct PassCount {
 };
 PassCount parse_passes(const std::string& text);
 uint64_t parse_mebibytes(const std::string& text, const char* option);  // the bytes
-double parse_moment(const std::string& text);  // of --at, seconds from 0 on
+double parse_moment(const std::string& text);                           // of --at, seconds from 0 on
 double parse_positive(const std::string& text, const char* option, const char* unit);
 ImageSize parse_size(const std::string& text);  // of --size
 Algorithm parse_algorithm(const std::string& text, const char* option);

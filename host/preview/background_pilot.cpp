@@ -38,7 +38,8 @@ BackgroundPilot::~BackgroundPilot() {
 void BackgroundPilot::run(const SceneChoice& options, RenderSettings settings, size_t index,
                           const Receiver& receiver) {
     const auto device = create_device({options.device, false});
-    Scene scene = compile_scene(*device, import_gltf(options.scene, import_options(options)), scene_options(options));
+    Scene scene =
+        compile_scene(*device, import_gltf(options.scene, import_options(options)), scene_options(options));
     if (index >= scene.receivers.size()) fail_input("the scene file has changed");
     move_receiver(scene, index, receiver.world_from_local, receiver.parameters);
     settings.receiver = scene.receivers[index].ref;

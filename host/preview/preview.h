@@ -66,9 +66,9 @@ struct PreviewStatus {
     float scene_radius = 0;
     uint64_t triangles = 0, shapes = 0, instances = 0, lights = 0, materials = 0;
     std::vector<KernelReport> kernels;
-    std::vector<std::string> variants;  // of its materials
-    ImportOptions import;               // the variant and the moment at hand
-    double animation_seconds = 0;       // how long its animations last; 0 = it has none
+    std::vector<std::string> variants;                       // of its materials
+    ImportOptions import;                                    // the variant and the moment at hand
+    double animation_seconds = 0;                            // how long its animations last; 0 = it has none
     std::shared_ptr<const std::vector<LiveObject>> objects;  // null = none yet
     std::map<Interface, std::vector<std::string>> class_names;
     std::vector<std::string> placed_names;  // of shapes and nodes, in order, the first thousand

@@ -24,7 +24,7 @@ class PreviewSession {
     void post(std::function<void(PreviewScene&)> task);
     std::shared_ptr<const PreviewPicture> picture() const;  // null = none yet
     PreviewStatus status() const;
-    void answer(bool yes);          // to the status' question
+    void answer(bool yes);         // to the status' question
     void rethrow_failure() const;  // of a scene that did not open, or a device that failed
 
   private:

@@ -101,7 +101,7 @@ struct TextureDescription {
 
 // A class file that the scene brings along: {"interface": "surface", "file": "velvet.glsl"}.
 struct ClassFileDescription {
-    std::string interface;  // surface, geometry, light, receiver, medium, element
+    std::string interface;       // surface, geometry, light, receiver, medium, element
     std::filesystem::path file;  // as it can be opened
     std::string where;
 };

@@ -1,4 +1,5 @@
-// Image files that scenes use: PNG, JPEG and WebP (8 bits a channel), Radiance .hdr and OpenEXR (linear floats).
+// Image files that scenes use: PNG, JPEG and WebP (8 bits a channel), Radiance .hdr and OpenEXR (linear
+// floats).
 #pragma once
 #include <filesystem>
 #include <span>

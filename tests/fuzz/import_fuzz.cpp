@@ -1,5 +1,6 @@
-// Fuzz target of the scene importer and of the other readers of files. With clang: -DETENDUE_LIBFUZZER -fsanitize=fuzzer,address,undefined.
-// With other compilers, a program of its own that mutates a built-in scene and the files that it is given:
+// Fuzz target of the scene importer and of the other readers of files. With clang: -DETENDUE_LIBFUZZER
+// -fsanitize=fuzzer,address,undefined. With other compilers, a program of its own that mutates a built-in
+// scene and the files that it is given:
 //
 //     import_fuzz SECONDS [SEED [FILE…]]
 //

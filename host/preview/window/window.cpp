@@ -175,8 +175,8 @@ void write_view_stats(const ViewState& state, const Screen& screen) {
 
 void show_until_closed(ViewState& state, Input& input, Screen& screen) {
     float scale = state.content_scale;  // that letters and panels are made for
-    bool moved = false;       // the view, in the frame before
-    double last_picture = 0;  // while the view moves; 0 = it stood still
+    bool moved = false;                 // the view, in the frame before
+    double last_picture = 0;            // while the view moves; 0 = it stood still
     int frames_left = frames_after_events;
     double last_frame = 0;
     while (!glfwWindowShouldClose(state.window) && !interrupted()) {
