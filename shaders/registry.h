@@ -50,7 +50,8 @@
     X(14, Depolarizer, depolarizer)                  \
     X(15, ColorFilter, color_filter)                 \
     X(16, LcCell, lc_cell)                           \
-    X(17, MuellerSheet, mueller)
+    X(17, MuellerSheet, mueller)                     \
+    X(18, MuellerTableSurface, mueller_table)
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)               \

@@ -153,6 +153,16 @@ void load_root_optics(GltfImport& import) {
         import.scene.environment = object_description(import, *environment, {});
 }
 
+// A Mueller surface has one matrix, and how it stands, or a file of them.
+void choose_mueller_form(const JsonAt& at, ObjectDescription& surface) {
+    const bool has_file = surface.parameters.contains("file");
+    if (has_file == surface.parameters.contains("matrix"))
+        fail_at(at, "has {} matrix {} file; allowed: one of them", has_file ? "both" : "neither",
+                has_file ? "and" : "nor");
+    if (has_file && surface.parameters.size() > 1) fail_at(at, "has a file; allowed beside it: nothing else");
+    if (has_file) surface.class_name = "mueller_table";
+}
+
 void read_material_optics(GltfImport& import, const JsonAt& optics, MaterialDescription& material) {
     only_members(optics, {"surface", "inside", "outside", "priority", "emission"});
     material.inside = text(optics, "inside");
@@ -163,6 +173,7 @@ void read_material_optics(GltfImport& import, const JsonAt& optics, MaterialDesc
                                    : object_description(import, *surface, {});
         if (std::optional<JsonAt> base = is_film ? find_object(*surface, "base") : std::nullopt)
             put_film_on_base(import, *base, material);
+        if (material.surface.class_name == "mueller") choose_mueller_form(*surface, material.surface);
     }
     if (std::optional<JsonAt> priority = find(optics, "priority"))
         material.priority = uint32_t(integer_value(*priority, 1));

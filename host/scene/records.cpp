@@ -95,7 +95,6 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
                 fail_input("{}: {} is out of range; allowed:{}", place, x, allowed(p));
         store(record, at, SpectrumRef{spectrum.rgb, resolver.spectrum(spectrum, kind)});
     } else if (type == "MuellerMatrix") {
-        if (value.is_null()) return;
         if (!value.is_array() || value.size() != 16)
             fail_input("{}: allowed: an array of 16 numbers, row by row", place);
         MuellerMatrix m;
@@ -128,26 +127,12 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
         if (!value.is_string()) fail_input("{}: allowed: the name of a .json or .bsdf file", place);
         store(record, at, resolver.measured(value.get<std::string>()));
     } else if (type == "MuellerTableRef") {
-        if (!value.is_null() && !value.is_string())
-            fail_input("{}: allowed: the name of a .pbsdf file", place);
-        store(record, at, value.is_null() ? no_record : resolver.mueller_table(value.get<std::string>()));
+        if (!value.is_string()) fail_input("{}: allowed: the name of a .pbsdf file", place);
+        store(record, at, resolver.mueller_table(value.get<std::string>()));
     } else {
         fail_input("{}: the class's member {} has type {}, which no parameter can fill", place, p.member.name,
                    type);
     }
-}
-
-// A surface has one matrix, and how it stands, or a table of them.
-void check_mueller_form(const ObjectDescription& object, const SceneDescription& scene) {
-    const auto has = [&](const char* name) {
-        return object.parameters.contains(name) && !object.parameters[name].is_null();
-    };
-    const bool has_file = has("file");
-    if (has_file == has("matrix"))
-        fail_input("{}: has {} matrix {} file; allowed: one of them", message_place(scene, object.where),
-                   has_file ? "both" : "neither", has_file ? "and" : "nor");
-    if (has_file && object.parameters.size() > 1)
-        fail_input("{}: has a file; allowed beside it: nothing else", message_place(scene, object.where));
 }
 
 }  // namespace
@@ -173,7 +158,6 @@ std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescriptio
                    interface_info(info.interface).name, info.name, names.empty() ? "none" : names);
     }
     for (const Parameter& p : info.parameters) {
-        if (p.member.type == "MuellerTableRef") check_mueller_form(object, resolver.scene);
         if (p.member.type == "Placement") {
             const glm::dmat4 m = placement.value_or(glm::dmat4(1.0));
             for (int column = 0; column < 4; ++column)
@@ -234,13 +218,6 @@ void add_measured_kinds(const std::vector<std::byte>& records, uint32_t stride, 
     constants.macros += fmt::format("#define MEASURED_SLICES {}\n", anisotropic ? 4 : 2);
 }
 
-// Does any record name something there?
-bool has_reference(const std::vector<std::byte>& records, uint32_t stride, const MemberLayout& member) {
-    for (size_t at = 0; at < records.size(); at += stride)
-        if (std::memcmp(&records[at + member.offset], &no_record, sizeof(no_record)) != 0) return true;
-    return false;
-}
-
 }  // namespace
 
 ClassConstants RecordBuffer::constant_members(const ClassInfo& info,
@@ -252,8 +229,6 @@ ClassConstants RecordBuffer::constant_members(const ClassInfo& info,
     for (const Parameter& p : info.parameters) {
         const std::string &type = p.member.type, &name = p.member.name;
         if (type == "MeasuredRef") add_measured_kinds(records, info.stride, p.member, constants);
-        if (type == "MuellerTableRef" && !has_reference(records, info.stride, p.member))
-            constants.macros += fmt::format("#define ABSENT_{}_{}\n", info.name, name);
         const int length = vector_length(type);
         if (!p.from_scene || (p.member.size != 4 && !length)) continue;
         if (varying.count(member_path(info, name))) continue;

@@ -1,15 +1,8 @@
-// What Mueller matrices say: a sheet with one matrix, or a rough surface with a table of matrices over directions and wavelengths.
-//
-// With `matrix` it is a sheet that does so to light that passes straight through, or, with `reflects`, that is reflected as by a mirror.
-// That holds for light from the side of the normal, at every angle and wavelength; for light from behind follows, by reciprocity,
-// diag(1, 1, -1, 1) times the transposed matrix times that. x of all frames is the projected axis. The matrix must be physical: no more
-// light than came, and no more polarization than light (Cloude 1990, "Conditions for the physical realisability of matrix operators in
-// polarimetry").
-//
-// With `file` it is a surface that was measured: a polarimetric BRDF of Baek et al. 2020, "Image-based acquisition and modeling of
-// polarimetric reflectance", 1/sr, in their format (scenes/FORMAT.md, "Measured surfaces"). Isotropic, both sides alike. Beyond
-// the measured wavelengths the nearest holds; colours take 611, 549 and 464 nm. Samples follow how much facets of each slope
-// reflect, some of them the cosine.
+// A sheet that does what a Mueller matrix says to light that passes straight through, or, with `reflects`, that is reflected as by a
+// mirror. That holds for light from the side of the normal, at every angle and wavelength; for light from behind follows, by
+// reciprocity, diag(1, 1, -1, 1) times the transposed matrix times that. x of all frames is the projected axis. The matrix must be
+// physical: no more light than came, and no more polarization than light (Cloude 1990, "Conditions for the physical realisability of
+// matrix operators in polarimetry"). With a `file` instead of a matrix, and nothing beside it, it is a `mueller_table`.
 //
 // Example:
 //     {"materials": [{"name": "right circular polarizer", "extensions": {"ETD_optics": {
@@ -21,26 +14,17 @@ struct MuellerMatrix {
     vec4 row0, row1, row2, row3;
 };
 
-struct MuellerTableRef { uint index; };  // a file -> index of a MuellerTable (lib/mueller_table.glsl), or NO_RECORD
-
 struct MuellerSheet {
-    MuellerMatrix matrix;  //: none. 16 numbers, row by row. Either this or `file`.
-    float axis;            //: 0 in (-inf, inf) rad. Of x, with `matrix`.
-    bool reflects;         //: false. With `matrix`: light is reflected instead of passing.
-    MuellerTableRef file;  //: none. Tensor file of Baek et al. (.pbsdf).
+    MuellerMatrix matrix;  //: required. 16 numbers, row by row.
+    float axis;            //: 0 in (-inf, inf) rad. Of x.
+    bool reflects;         //: false. Light is reflected instead of passing.
 };
-
-#include "features/mueller_tables.glsl"
 
 MuellerSheet mueller_resolve(MuellerSheet r, SurfaceContext c) { return r; }
 
-Spectrum mueller_transparency(MuellerSheet r, SurfaceContext c, vec3 wo) {
-    return Spectrum(r.reflects || mueller_is_table(r) ? 0.0 : r.matrix.row0.x);
-}
+Spectrum mueller_transparency(MuellerSheet r, SurfaceContext c, vec3 wo) { return Spectrum(r.reflects ? 0.0 : r.matrix.row0.x); }
 
 Mueller mueller_mueller(MuellerSheet r, SurfaceContext c, vec3 from, vec3 to, uint event) {
-    // Nothing passes a table: where light goes straight on, its code is left out.
-    if (mueller_is_table(r) && (event & EVENT_STRAIGHT) == 0u) return mueller_of_table(r, from, to);
     Mueller m = depolarizing();
     m.is_general = true;
     m.from = axis_across(sheet_axis(r.axis), from), m.to = axis_across(sheet_axis(r.axis), to);
@@ -54,15 +38,11 @@ Mueller mueller_mueller(MuellerSheet r, SurfaceContext c, vec3 from, vec3 to, ui
     return m;
 }
 
-SurfacePair mueller_evaluate(MuellerSheet r, SurfaceContext c, vec3 wo, vec3 wi) {
-    if (mueller_is_table(r)) return mueller_pair_of_table(r, c.importance, wo, wi);
-    return no_surface_pair();
-}
+SurfacePair mueller_evaluate(MuellerSheet r, SurfaceContext c, vec3 wo, vec3 wi) { return no_surface_pair(); }
 BsdfSample mueller_sample(MuellerSheet r, SurfaceContext c, vec3 wo, vec3 u) {
-    if (mueller_is_table(r)) return mueller_sample_of_table(r, wo, u);
     Spectrum part = Spectrum(r.matrix.row0.x);
     if (!r.reflects || is_black(part)) return sheet_sample(wo, part);
     return BsdfSample(vec3(-wo.xy, wo.z), part, 1.0, EVENT_REFLECT | EVENT_DELTA);
 }
-bool mueller_is_delta(MuellerSheet r, SurfaceContext c) { return !mueller_is_table(r); }
-bool mueller_is_opaque(MuellerSheet r, SurfaceContext c) { return r.reflects || mueller_is_table(r); }
+bool mueller_is_delta(MuellerSheet r, SurfaceContext c) { return true; }
+bool mueller_is_opaque(MuellerSheet r, SurfaceContext c) { return r.reflects; }

@@ -134,7 +134,7 @@ TEST_CASE("a table made from a rough metal is that metal, the nearer the finer i
     SurfaceProbe metal(classes, "conductor",
                        {{{"eta", {0.143, 0.375, 1.442}}, {"k", {3.983, 2.386, 1.603}}, {"alpha", 0.4}}});
     const auto of_table = [&](const MuellerNodes& nodes) {
-        SurfaceProbe probe(classes, "mueller", {write_file("metal.pbsdf", gold_fields(0.4, nodes))});
+        SurfaceProbe probe(classes, "mueller_table", {write_file("metal.pbsdf", gold_fields(0.4, nodes))});
         return difference(probe, metal, 0.4);
     };
     const Difference coarse = of_table(even_nodes(19, 7, 13)), fine = of_table(even_nodes(37, 19, 37));
@@ -147,7 +147,7 @@ TEST_CASE("a table made from a rough metal is that metal, the nearer the finer i
 
 TEST_CASE("a handed table is handed the same way from both sides, and for light of both directions") {
     ClassRegistry classes = registry();
-    SurfaceProbe probe(classes, "mueller",
+    SurfaceProbe probe(classes, "mueller_table",
                        {write_file("fine.pbsdf", handed_fields(0.4, even_nodes(65, 19, 31)))});
     const auto above = queries(1000);
     auto turned = above;

@@ -172,14 +172,11 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
         const nlohmann::json circular = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
         const nlohmann::json diagonal = {0.4, 0.1, 0.2, 0, 0.05, 0.2,  0, 0.1,
                                          0.1, 0,   0.2, 0, 0,    0.05, 0, 0.2};
-        std::vector<C> result = {
-            C{"some matrix", {{"matrix", diagonal}}, 1, 1, 0.4},
-            C{"right circular polarizer", {{"matrix", circular}}, 1, 1, 0.5},
-            C{"mirror of it", {{"matrix", circular}, {"axis", 0.4}, {"reflects", true}}, 1, 1, 0.5}};
-        const std::vector<C> tables = mueller_files();
-        result.insert(result.end(), tables.begin(), tables.end());
-        return result;
+        return {C{"some matrix", {{"matrix", diagonal}}, 1, 1, 0.4},
+                C{"right circular polarizer", {{"matrix", circular}}, 1, 1, 0.5},
+                C{"mirror of it", {{"matrix", circular}, {"axis", 0.4}, {"reflects", true}}, 1, 1, 0.5}};
     }
+    if (name == "mueller_table") return mueller_files();
     if (name == "color_filter") return {C{"red", {{"transmittance", {0.9, 0.2, 0.05}}}}};
     if (name == "measured") return measured_files();
     if (name == "absorber") return {C{"absorber", nlohmann::json::object(), 1, 1, 0.0}};

@@ -55,7 +55,7 @@ inline void check_spectrum(const std::filesystem::path& file) {
 }
 
 inline void check_checkpoint(const std::filesystem::path& file) {
-    const Checkpoint checkpoint = read_checkpoint(file, {{"scene", "s"}, {"seed", 7}});
+    const Checkpoint checkpoint = read_checkpoint(file);
     if (checkpoint.arrays.size() > 1000) throw std::logic_error("a checkpoint has its few arrays");
 }
 
@@ -80,8 +80,8 @@ inline std::string radiance_bytes() {
 inline std::string checkpoint_bytes(const TemporaryFolder& folder) {
     Checkpoint checkpoint;
     checkpoint.identity = {{"scene", "s"}, {"seed", 7}};
-    checkpoint.passes = 3;
-    checkpoint.counters = {{"rays", 5}, {"choice", {{"reason", "because"}}}};
+    checkpoint.passes = PassSet(0, 3);
+    checkpoint.about = {{"rays", 5}, {"choice", {{"reason", "because"}}}};
     checkpoint.arrays = {{"film", std::vector<std::byte>(40, std::byte{1})}, {"bins", {}}};
     write_checkpoint(folder / "sound", checkpoint);
     return read_text(folder / "sound");

@@ -111,8 +111,7 @@ template <class See>
 void for_each_class(See see) {
     const ClassRegistry registry(test_sources());
     for (const ClassInfo& info : registry.classes(Interface::surface))
-        for (const nlohmann::json& surface : surfaces_of(info.name))
-            see(surface, {{"class", "homogeneous"}, {"scattering", 1}});
+        see(surface_of(info.name), {{"class", "homogeneous"}, {"scattering", 1}});
     for (const ClassInfo& info : registry.classes(Interface::medium))
         see({{"class", "dielectric"}}, medium_of(info.name));
 }

@@ -7,16 +7,14 @@
 
 namespace etendue {
 
-// What a scene says of surfaces of the class, whose other parameters are by default: one of each form that it
-// has.
-inline std::vector<nlohmann::json> surfaces_of(const std::string& name) {
+// What a scene says of surfaces of the class, whose other parameters are by default.
+inline nlohmann::json surface_of(const std::string& name) {
     nlohmann::json surface = {{"class", name}};
     if (name == "measured") surface["file"] = "metal.bsdf";
+    if (name == "mueller_table") surface["file"] = "metal.pbsdf";
     if (name == "color_filter") surface["transmittance"] = 0.5;
-    if (name != "mueller") return {surface};
-    surface["matrix"] = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
-    const nlohmann::json table = {{"class", name}, {"file", "metal.pbsdf"}};
-    return {surface, table};
+    if (name == "mueller") surface["matrix"] = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
+    return surface;
 }
 
 inline nlohmann::json medium_of(const std::string& name) {
@@ -25,7 +23,7 @@ inline nlohmann::json medium_of(const std::string& name) {
     return medium;
 }
 
-// The files that `measured` and `mueller` name.
+// The files that `measured` and `mueller_table` name.
 inline void write_metals(const std::filesystem::path& folder) {
     GgxMetal metal;
     metal.reflectance = [](double, size_t) { return 0.8; };
