@@ -73,8 +73,11 @@ const char* event_name(PathEvent event) {
 }
 
 double wavelength_at(const RecordedPath& path, const PathVertex& vertex) {
-    const glm::vec4& t = vertex.throughput;
-    return t.x > 0 && t.y == 0 && t.z == 0 && t.w == 0 ? double(path.wavelengths.x) : 0.0;
+    double nm = 0;
+    int left = 0;  // lanes
+    for (int lane = 0; lane < 4; ++lane)
+        if (vertex.throughput[lane] != 0) nm = double(path.wavelengths[lane]), ++left;
+    return left == 1 ? nm : 0.0;
 }
 
 glm::vec3 line_color(const RecordedPath& path, const PathVertex& vertex) {
