@@ -187,7 +187,8 @@ void SceneCompiler::ask_opacity() {
         else
             out_.features.straight = true;
         if (is_opaque[i] & 2) materials_[i].flags |= blocks;
-        out_.features.coverage |= in_.materials[i].emission && !(is_opaque[i] & 1) &&
+        out_.features.coverage |= i < in_.materials.size() && in_.materials[i].emission &&
+                                  !(is_opaque[i] & 1) &&
                                   find_class(Interface::surface, in_.materials[i].surface).says_coverage;
     }
 }

@@ -81,7 +81,6 @@ Spectrum mueller_table_value(MuellerTable t, vec3 from, vec3 to) {
 
 Mueller mueller_table_matrix(MuellerTable t, vec3 from, vec3 to) {
     Mueller m = depolarizing();
-    m.is_general = true;
     m.from = m.to = facet_axis(to, normalize(from + to));
     for (int i = 0; i < 16; ++i) m.m[i] = Spectrum(0);
     MuellerCell cell = mueller_cell(t, from, to);

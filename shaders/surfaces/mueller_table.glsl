@@ -22,6 +22,7 @@ Mueller mueller_table_mueller(MuellerTableSurface r, SurfaceContext c, vec3 from
     if ((event & EVENT_STRAIGHT) != 0u) return depolarizing();  // nothing passes
     bool below = from.z < 0.0;
     Mueller m = mueller_table_matrix(mueller_tables[r.file.index], mueller_upright(from, below), mueller_upright(to, below));
+    m.is_general = true;
     m.from = m.to = mueller_upright(m.from, below);
     return m;
 }
