@@ -109,7 +109,7 @@ std::string first_sentence(const std::string& comment);
 // all its records, so that the compiler drops what that switches off.
 struct ClassConstants {
     std::string statements;  // set members of a record `r`
-    std::string macros;  // ABSENT_NAME_MEMBER of every number that is 0, and of files that there are none of
+    std::string macros;      // ABSENT_NAME_MEMBER of every number that is 0
 };
 std::string class_header(const InterfaceInfo& interface, const std::vector<const ClassInfo*>& classes,
                          const std::map<std::string, ClassConstants>& constants = {});

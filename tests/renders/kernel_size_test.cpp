@@ -156,7 +156,8 @@ TEST_CASE("kernels of films that polarize are within the budget") {
 // No scene has more of them; each class alone (below) needs kernels no larger. Beside all others, tables of
 // Mueller matrices
 // (`mueller_table`) exceed the budget by 53 kB, so that such a scene starts slowly; they are left out.
-TEST_CASE("kernels of a scene of all classes of surfaces and media at once are within the budget") {
+TEST_CASE("kernels of a scene of all classes of surfaces and media at once are within the budget" *
+          doctest::test_suite("long")) {
     ProbedScene all;
     for_each_class([&](const nlohmann::json& surface, const nlohmann::json& medium) {
         if (surface["class"] != "mueller_table") all.add(surface, medium);

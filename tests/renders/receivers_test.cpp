@@ -122,7 +122,7 @@ TEST_CASE("illuminance in a room: all algorithms agree") {
         {.backward = 128, .forward = 32, .bidirectional = 16, .largest_error = 0.01, .receiver = "floor"});
 }
 
-TEST_CASE("illuminance in fog: all algorithms agree") {
+TEST_CASE("illuminance in fog: all algorithms agree" * doctest::test_suite("long")) {
     SceneBuilder s;
     s.medium("fog", {{"scattering", 0.4}, {"absorption", {0.1, 0.05, 0.2}}});
     add_box(s, {4, 4, 4},
