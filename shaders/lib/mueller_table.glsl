@@ -119,8 +119,9 @@ vec3 sample_half_vector(MuellerTable t, vec2 u) {
 }
 
 SurfacePair mueller_table_pair(MuellerTable t, bool importance, vec3 wo, vec3 wi) {
-    if (wo.z <= 0.0 || wi.z <= 0.0) return no_surface_pair();
-    vec3 h = normalize(wo + wi);
+    vec3 sum = wo + wi;
+    if (wo.z <= 0.0 || wi.z <= 0.0 || !(dot(sum, sum) > 1e-12)) return no_surface_pair();  // opposite ones at the horizon have no h
+    vec3 h = normalize(sum);
     float halfway = (1.0 - t.cosine_part) * half_vector_pdf(t, h) / (4.0 * dot(wo, h));
     vec2 even = t.cosine_part * INV_PI * vec2(wi.z, wo.z);
     return SurfacePair(mueller_table_value(t, importance ? wo : wi, importance ? wi : wo) * wi.z, halfway + even.x, halfway + even.y);
