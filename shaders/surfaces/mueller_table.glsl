@@ -3,6 +3,10 @@
 // "Measured surfaces"). Isotropic, both sides alike: from behind, directions are turned about an axis in the surface, so that what
 // is handed stays so. Beyond the measured wavelengths the nearest holds; colours take 611, 549 and 464 nm. Samples follow how
 // much facets of each slope reflect, some of them the cosine.
+//
+// Example:
+//     {"materials": [{"name": "gold, with its polarization", "extensions": {"ETD_optics": {
+//         "surface": {"class": "mueller_table", "file": "gold.pbsdf"}}}}]}
 #define MUELLER_TABLE_POLARIZES
 
 struct MuellerTableRef { uint index; };  // a file -> index of a MuellerTable (lib/mueller_table.glsl)

@@ -136,7 +136,36 @@ def paint():
 
 
 SHOWCASES = [geometry, light, receiver, lambda: ball("surface"), lambda: ball("medium"), phase]
-FILES = {"sky.hdr": sky, "paint.json": paint}
+def rough_gold():
+    """A table of Mueller matrices in the format of Baek et al. 2020: facets of gold (Fresnel's equations with the indices of
+    Johnson & Christy 1972 at 450, 550 and 650 nm) whose slopes are GGX's with alpha 0.4, without shadowing."""
+    indices = {450: 1.38 + 1.92j, 550: 0.42 + 2.44j, 650: 0.17 + 3.15j}
+    phi, theta_d, theta_h = ([end * i / (count - 1) for i in range(count)]
+                             for end, count in ((2 * math.pi, 3), (math.pi / 2, 5), (math.pi / 2, 11)))
+
+    def matrix(index, d, h):
+        cosine, inside = math.cos(d), (index * index - math.sin(d) ** 2) ** 0.5
+        s = (cosine - inside) / (cosine + inside)
+        p = (index * index * cosine - inside) / (index * index * cosine + inside)
+        even, odd, cross = (abs(s) ** 2 + abs(p) ** 2) / 2, (abs(s) ** 2 - abs(p) ** 2) / 2, s * p.conjugate()
+        scale = 0.16 / (math.pi * (1 - 0.84 * math.cos(h) ** 2) ** 2) / 4
+        block = [even, odd, 0, 0, odd, even, 0, 0, 0, 0, cross.real, cross.imag, 0, 0, -cross.imag, cross.real]
+        return [scale * x for x in block]
+
+    numbers = [x for _ in phi for d in theta_d for h in theta_h for index in indices.values() for x in matrix(index, d, h)]
+    floats = lambda values: struct.pack(f"<{len(values)}f", *values)
+    fields = [("phi_d", [1, len(phi)], 10, floats(phi)), ("theta_d", [1, len(theta_d)], 10, floats(theta_d)),
+              ("theta_h", [1, len(theta_h)], 10, floats(theta_h)), ("wvls", [len(indices)], 3, struct.pack("<3H", *indices)),
+              ("M", [len(phi), len(theta_d), len(theta_h), len(indices), 4, 4], 10, floats(numbers))]
+    head = b"tensor_file\0\1\0" + struct.pack("<I", len(fields))
+    place = len(head) + sum(2 + len(name) + 11 + 8 * len(shape) for name, shape, _, _ in fields)
+    for name, shape, kind, data in fields:
+        head += struct.pack("<H", len(name)) + name.encode() + struct.pack(f"<HBQ{len(shape)}Q", len(shape), kind, place, *shape)
+        place += len(data)
+    return head + b"".join(data for _, _, _, data in fields)
+
+
+FILES = {"sky.hdr": sky, "paint.json": paint, "gold.pbsdf": rough_gold}
 
 
 def write_showcases(folder):
