@@ -4,7 +4,7 @@
 //
 // Where a receptor coincides with a surface it lies on top: a forward ray is caught a margin before, from where it goes on.
 #include "features/bending.glsl"
-#include "interfaces/receiver.glsl"
+#include "features/receiver_kinds.glsl"
 #include "lib/forward_pass.glsl"
 #include "lib/frames.glsl"
 #include "lib/hits.glsl"
@@ -59,14 +59,28 @@ SurfacePoint receptor_point(Path path) {
 void leave_receptor(inout Path path) { path.flags &= ~(PATH_TO_RECEPTOR | PATH_PAST_RECEPTOR); }
 
 #if FORWARD
+const float ALREADY_THERE = 1e-30;  // length of a ray whose end nothing hides
+
 // Light goes on from a little before where it was caught.
 void pass_receptor(inout Path path, SurfacePoint p) {
     path.origin = p.position - 2.0 * receptor_margin(p.position, distance(p.position, path.origin)) * path.direction;
     path.flags |= PATH_PAST_RECEPTOR;
 }
+
+// The end of an event at a receptor: the shadow ray has no way to go, the path goes on. A macro, since it returns.
+#define RETURN_IF_CAUGHT(a, path, shadow)  \
+    if (a.caught) {                        \
+        shadow.t_max = ALREADY_THERE;      \
+        pass_receptor(path, a.p);          \
+        return true;                       \
+    }
 #endif
+bool goes_to_receptor(Path path) { return (path.flags & PATH_TO_RECEPTOR) != 0u; }
 
 #else
+#define RECEPTOR_MATERIAL 0u
+#define RETURN_IF_CAUGHT(a, path, shadow)
+#define goes_to_receptor(path) false
 #define begin_ray(path) begin_step(path)
 #define is_caught(path, hit, scatters) false
 #define receptor_point(path) volume_point(vec3(0), vec3(0))

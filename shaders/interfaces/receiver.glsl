@@ -22,7 +22,6 @@
 //
 // `film` runs over [0,1]², x to the right, y down; film_aspect = width / height of the image. World space; node transforms
 // may scale, shear and mirror.
-#include "features/defaults.glsl"
 #include "lib/accurate_math.glsl"
 #include "lib/constants.glsl"
 #include "lib/frames.glsl"
@@ -90,40 +89,6 @@ ReceiverSample receiver_connect(uint ref, vec3 point, vec2 u, float film_aspect)
     }
     return result;
 }
-
-#if HAS_RECEPTORS
-bool has_receptor(uint ref) {
-    bool result = false;
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_HAS_RECEPTOR == 1; break;
-        RECEIVER_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
-}
-
-ReceptorHit receiver_receptor(uint ref, vec3 origin, vec3 direction) {
-    ReceptorHit result = no_receptor_hit();
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_receptor(name##_record(record_index(ref)), origin, direction); break;
-        RECEIVER_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
-}
-#endif
-
-#if HAS_FAR_RECEIVERS
-ReceiverSample receiver_far(uint ref, vec3 direction, float film_aspect) {
-    ReceiverSample result = no_receiver_sample();
-    switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_far(name##_record(record_index(ref)), direction, film_aspect); break;
-        RECEIVER_CLASSES(CASE)
-#undef CASE
-    }
-    return result;
-}
-#endif
 
 // x of the frame of light that arrives against `direction`, a receiver's ray: y of its node, as the ray sees it, stands upright.
 vec3 receiver_stokes_axis(uint ref, vec3 direction) {

@@ -30,11 +30,9 @@ void main() {
             if (hits[slot].primitive != NO_RECORD) {
                 if (HAS_PRIORITIES == 1) settle_hit(slot);
                 tag = record_tag(materials[primitives[hits[slot].primitive].material].surface);
-            }
-#if HAS_RECEPTORS
-            else if ((path_states[slot].flags & PATH_TO_RECEPTOR) != 0u)
+            } else if (goes_to_receptor(path_states[slot])) {
                 tag = record_tag(materials[RECEPTOR_MATERIAL].surface);
-#endif
+            }
         }
         for (uint c = 0u; c < uint(SCATTER_CLASS_COUNT); ++c) {
             bool wanted = tag == SCATTER_CLASS_TAGS[c] || (c == 0u && tag == 0u);

@@ -1,15 +1,8 @@
 // One event of a forward path: what the ray meets is crossed, connected to the receiver, stored, and scattered from.
 #include "features/meeting.glsl"
 #include "lib/events.glsl"
+#include "features/far_receivers.glsl"
 #include "stages/arrive.glsl"
-
-const float ALREADY_THERE = 1e-30;  // length of a ray whose end nothing hides
-
-uint pixel_of(vec2 film) {
-    uvec2 size = uvec2(forward_pass.width, forward_pass.height);
-    uvec2 pixel = min(uvec2(film * vec2(size)), size - 1u);
-    return pixel.y * size.x + pixel.x;
-}
 
 // The ray that brings light from the point to the receiver.
 ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, ReceiverSample r, Scattering pair,
@@ -24,23 +17,6 @@ ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, Receive
     shadow.target = pixel_of(r.film);
     return shadow;
 }
-
-// Light that leaves the scene, for a receiver far away.
-#if HAS_FAR_RECEIVERS
-void reach_far(Path path, inout ShadowRay shadow) {
-    ReceiverSample r = receiver_far(forward_pass.receiver, path.direction, film_aspect());
-    if ((path.flags & PATH_SMOOTH) == 0u || !(r.pdf > 0.0)) return;
-    shadow.contribution = path.throughput * (r.density * r.weight * pixel_count() * forward_pass.path_flux);
-    shadow.origin = path.origin;
-    shadow.direction = path.direction;
-    shadow.t_max = ALREADY_THERE;
-    carry_polarization(shadow, path);
-    weigh_alone(shadow);
-    shadow.target = pixel_of(r.film);
-}
-#else
-#define reach_far(path, shadow)
-#endif
 
 // The event itself. Returns whether the path goes on.
 bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out uint kind, out ShadowRay shadow) {
@@ -61,13 +37,7 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
     SurfaceEvent event = scattering_event(s, wi, wi, 1u, sample_3d(path.random));
     if (r.pdf > 0.0 && is_on_one_side(s, r.direction, wi))
         shadow = connect_receiver(path, p, s, r, event.pair, mis);
-#if HAS_RECEPTORS
-    if (a.caught) {
-        shadow.t_max = ALREADY_THERE;
-        pass_receptor(path, p);
-        return true;
-    }
-#endif
+    RETURN_IF_CAUGHT(a, path, shadow)
     kind = event.next.event;
     return follow_sample(path, p, s, event, mis);
 }

@@ -35,7 +35,7 @@ struct Connected {
 
 const char* const text = R"(
     #define SCENE_RADIUS 3.0
-    #include "interfaces/receiver.glsl"
+    #include "features/receiver_kinds.glsl"
     layout(local_size_x = 64) in;
     struct Emitted { vec3 origin; float weight; vec3 direction; float density, connect_pdf; uint is_parallel; };
     struct Connected { vec3 direction; float distance; vec2 film; float density, weight, pdf, footprint; };

@@ -1,0 +1,37 @@
+// What only some classes of receivers have: receptors, and a place far away.
+#include "features/defaults.glsl"
+#include "interfaces/receiver.glsl"
+
+#if HAS_RECEPTORS
+bool has_receptor(uint ref) {
+    bool result = false;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_HAS_RECEPTOR == 1; break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+ReceptorHit receiver_receptor(uint ref, vec3 origin, vec3 direction) {
+    ReceptorHit result = no_receptor_hit();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_receptor(name##_record(record_index(ref)), origin, direction); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+#endif
+
+#if HAS_FAR_RECEIVERS
+ReceiverSample receiver_far(uint ref, vec3 direction, float film_aspect) {
+    ReceiverSample result = no_receiver_sample();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_far(name##_record(record_index(ref)), direction, film_aspect); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+#endif
