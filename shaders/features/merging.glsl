@@ -3,9 +3,6 @@
 #include "lib/forward_pass.glsl"
 #include "lib/materials.glsl"
 
-float film_aspect() { return float(forward_pass.width) / float(forward_pass.height); }
-float pixel_count() { return float(forward_pass.width) * float(forward_pass.height); }
-
 bool is_narrow(uint material) {
     bool is_medium = HAS_SCATTERING == 1 && material == NO_RECORD;
     return !is_medium && (materials[material].flags & MATERIAL_NARROW) != 0u;

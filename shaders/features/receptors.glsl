@@ -59,8 +59,6 @@ SurfacePoint receptor_point(Path path) {
 void leave_receptor(inout Path path) { path.flags &= ~(PATH_TO_RECEPTOR | PATH_PAST_RECEPTOR); }
 
 #if FORWARD
-const float ALREADY_THERE = 1e-30;  // length of a ray whose end nothing hides
-
 // Light goes on from a little before where it was caught.
 void pass_receptor(inout Path path, SurfacePoint p) {
     path.origin = p.position - 2.0 * receptor_margin(p.position, distance(p.position, path.origin)) * path.direction;
@@ -92,16 +90,4 @@ bool goes_to_receptor(Path path) { return (path.flags & PATH_TO_RECEPTOR) != 0u;
 bool is_for_receiver(bool caught) { return caught == has_receptor(forward_pass.receiver); }
 #else
 #define is_for_receiver(caught) true
-#endif
-
-// Receivers far away see light that leaves the scene. Where it has started at a point or as a beam, and met smooth surfaces alone,
-// nothing else brings it.
-#if HAS_FAR_RECEIVERS && FORWARD
-void start_smooth(inout Path path, bool is_delta) { path.flags |= is_delta ? PATH_SMOOTH : 0u; }
-void keep_smooth(inout Path path, uint event) {
-    if ((event & EVENT_DELTA) == 0u) path.flags &= ~PATH_SMOOTH;
-}
-#else
-#define start_smooth(path, is_delta)
-#define keep_smooth(path, event)
 #endif

@@ -2,6 +2,7 @@
 #include "features/bending.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
+#include "features/far_receivers.glsl"
 #include "features/receptors.glsl"
 #include "features/recording.glsl"
 #include "features/straight.glsl"

@@ -69,6 +69,8 @@ struct ShadowRay {
     MEMBER_IF(BEAMS, float others_apart;)     // that need no passage
 };
 
+const float ALREADY_THERE = 1e-30;  // t_max of a ray whose end nothing hides
+
 ShadowRay no_shadow_ray() {
     ShadowRay ray;
     ray.origin = vec3(0), ray.direction = vec3(0, 0, 1), ray.t_max = 0.0, ray.contribution = Spectrum(0), ray.target = 0u;

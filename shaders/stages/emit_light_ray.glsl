@@ -3,7 +3,7 @@
 #include "features/dispersion.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
-#include "features/receptors.glsl"
+#include "features/far_receivers.glsl"
 #include "features/recording.glsl"
 #include "features/start_media.glsl"
 #include "interfaces/light_source.glsl"

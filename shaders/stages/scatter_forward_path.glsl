@@ -1,7 +1,6 @@
 // One event of a forward path: what the ray meets is crossed, connected to the receiver, stored, and scattered from.
 #include "features/meeting.glsl"
 #include "lib/events.glsl"
-#include "features/far_receivers.glsl"
 #include "stages/arrive.glsl"
 
 // The ray that brings light from the point to the receiver.
