@@ -16,10 +16,6 @@ namespace {
 constexpr const char* header =
     "scene,algorithm,seed,passes,seconds,rays_backward,rays_shadow,rays_forward,relmse,relmse_measured,bias";
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-    write_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
-}
-
 std::string read_text(const std::filesystem::path& path) {
     const auto bytes = read_whole_file(path);
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -99,8 +95,8 @@ void write_results(const std::filesystem::path& folder, const BenchResults& resu
                           {"width", s.width},
                           {"height", s.height},
                           {"notes", s.notes}});
-    write_text(folder / "bench.json", nlohmann::json{{"scenes", scenes}}.dump(2) + "\n");
-    write_text(folder / "bench.csv", csv);
+    write_atomically(folder / "bench.json", nlohmann::json{{"scenes", scenes}}.dump(2) + "\n");
+    write_atomically(folder / "bench.csv", csv);
 }
 
 BenchResults read_results(const std::filesystem::path& folder) {

@@ -5,6 +5,7 @@
 #include "host/error.h"
 #include "host/image/atomic_file.h"
 #include "host/image/exr.h"
+#include "host/image/outputs.h"
 
 namespace etendue {
 namespace {
@@ -84,7 +85,7 @@ void write_stats(const MergeOptions& options, const Checkpoint& all, const Relat
                  {"estimated_relative_error", finite_or_null(error.value())},
                  {"relative_error_bound", finite_or_null(error.bound())}});
     const std::string text = json.dump(2) + "\n";
-    write_atomically(options.stats, std::as_bytes(std::span(text.data(), text.size())));
+    write_atomically(options.stats, text);
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ int merge_command(const MergeOptions& options) {
     Merger merger(options);
     for (const fs::path& part : options.parts) merger.add(part);
     Checkpoint& all = merger.all();
-    if (!options.checkpoint.empty()) write_checkpoint(options.checkpoint, all);
+    Outputs outputs;
     std::string told =
         fmt::format("passes {} of {} parts", to_text(all.passes.ranges()), options.parts.size());
     if (!options.output.empty() || !options.stats.empty()) {
@@ -104,10 +105,12 @@ int merge_command(const MergeOptions& options) {
         if (!options.output.empty()) {
             developed.image.attributes.merge(image_attributes(all));
             developed.image.attributes["command"] = options.command_line;
-            write_exr(options.output, developed.image);
+            outputs.write([&] { write_exr(options.output, developed.image); });
         }
-        if (!options.stats.empty()) write_stats(options, all, developed.error);
+        if (!options.stats.empty()) outputs.write([&] { write_stats(options, all, developed.error); });
     }
+    if (!options.checkpoint.empty()) outputs.write([&] { write_checkpoint(options.checkpoint, all); });
+    outputs.finish();
     if (!options.quiet) fmt::print("{}\n", told);
     return int(ExitCode::done);
 }

@@ -23,8 +23,6 @@ using Clock = std::chrono::steady_clock;
 constexpr uint32_t pixels = 240;        // rows and columns of a picture
 constexpr double batch_seconds = 0.25;  // of work between two looks at the interrupt
 
-std::span<const std::byte> bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
-
 void merge(json& into, const json& from) {
     if (into.is_object() && from.is_object())
         for (const auto& [key, value] : from.items()) merge(into[key], value);
@@ -57,7 +55,7 @@ Showcases::Showcases() {
     if (!mkdtemp(name.data())) fail_input("{}: no folder for scenes can be made there", name);
     folder_ = name;
     for (const EmbeddedFile& file : embedded_showcases())
-        write_atomically(folder_ / fs::path(file.name).filename(), bytes_of(file.bytes));
+        write_atomically(folder_ / fs::path(file.name).filename(), file.bytes);
 }
 
 Showcases::~Showcases() {
@@ -75,7 +73,7 @@ fs::path Showcases::write_scene(const ClassInfo& info) const {
     if (scene.is_null()) fail_input("{}: there is no scene for examples: scenes/{}", info.file, showcase);
     merge(scene, example);
     const fs::path path = folder_ / (info.name + " (example).gltf");
-    write_atomically(path, bytes_of(scene.dump(1)));
+    write_atomically(path, scene.dump(1));
     return path;
 }
 

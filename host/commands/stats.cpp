@@ -102,7 +102,7 @@ void write_stats(const std::filesystem::path& path, const RenderOptions& options
                  const Scene& scene, const Renderer& renderer, const RelativeError& error,
                  double setup_seconds) {
     const std::string text = stats(options, device, scene, renderer, error, setup_seconds).dump(2) + "\n";
-    write_atomically(path, std::as_bytes(std::span(text.data(), text.size())));
+    write_atomically(path, text);
 }
 
 }  // namespace etendue

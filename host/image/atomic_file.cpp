@@ -98,6 +98,10 @@ void write_atomically(const fs::path& path, std::span<const std::byte> bytes) {
     write_atomically(path, std::vector{bytes});
 }
 
+void write_atomically(const fs::path& path, std::string_view text) {
+    write_atomically(path, std::as_bytes(std::span(text)));
+}
+
 void write_atomically(const fs::path& path, const std::vector<std::span<const std::byte>>& pieces) {
     fs::path target = destination(path);
     struct stat status = status_of(target, path);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace etendue {
@@ -14,6 +15,7 @@ void check_writable(const std::filesystem::path& path);
 
 // Where `path` is no regular file (a pipe, a terminal) it is written to directly.
 void write_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
+void write_atomically(const std::filesystem::path& path, std::string_view text);
 // One behind the other.
 void write_atomically(const std::filesystem::path& path,
                       const std::vector<std::span<const std::byte>>& pieces);

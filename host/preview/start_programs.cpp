@@ -54,7 +54,7 @@ void StartPrograms::write(const Scene& scene) const {
     if (scene.reads_color_spectra) text += color_spectra_line;
     if (file_.empty() || text == read_text(file_)) return;
     try {
-        write_atomically(file_, std::as_bytes(std::span(text)));
+        write_atomically(file_, text);
     } catch (const Error&) {  // a full disk: the next start takes longer
     }
 }

@@ -131,7 +131,7 @@ void write_paths(const std::filesystem::path& file, const std::vector<RecordedPa
     const std::string text = ending == ".json"  ? as_json(paths)
                              : ending == ".csv" ? as_csv(paths)
                                                 : as_glb(paths);
-    write_atomically(file, std::as_bytes(std::span(text)));
+    write_atomically(file, text);
 }
 
 }  // namespace etendue

@@ -170,7 +170,7 @@ void write_view_stats(const ViewState& state, const Screen& screen) {
                                   {"devices_lost", state.status.devices_lost},
                                   {"window_devices_lost", screen.devices_lost()}};
     const std::string text = stats.dump(2) + "\n";
-    write_atomically(state.options.stats, std::as_bytes(std::span(text)));
+    write_atomically(state.options.stats, text);
 }
 
 void show_until_closed(ViewState& state, Input& input, Screen& screen) {
