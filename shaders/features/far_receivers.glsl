@@ -1,9 +1,9 @@
 // Receivers far away see light that leaves the scene. Where it has started at a point or as a beam, and met smooth surfaces alone,
 // nothing else brings it.
+#include "features/merging.glsl"
 #include "features/polarization.glsl"
 #include "features/receiver_kinds.glsl"
 #include "features/weights.glsl"
-#include "lib/forward_pass.glsl"
 #include "lib/path.glsl"
 
 #if HAS_FAR_RECEIVERS && FORWARD

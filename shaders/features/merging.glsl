@@ -3,6 +3,15 @@
 #include "lib/forward_pass.glsl"
 #include "lib/materials.glsl"
 
+// Of the receiver's image.
+float film_aspect() { return float(forward_pass.width) / float(forward_pass.height); }
+float pixel_count() { return float(forward_pass.width) * float(forward_pass.height); }
+uint pixel_of(vec2 film) {
+    uvec2 size = uvec2(forward_pass.width, forward_pass.height);
+    uvec2 pixel = min(uvec2(film * vec2(size)), size - 1u);
+    return pixel.y * size.x + pixel.x;
+}
+
 bool is_narrow(uint material) {
     bool is_medium = HAS_SCATTERING == 1 && material == NO_RECORD;
     return !is_medium && (materials[material].flags & MATERIAL_NARROW) != 0u;

@@ -13,12 +13,3 @@ struct ForwardPass {
     float splat_unit;     // cd/m², about the mean radiance of the scene
 };
 layout(scalar, set = 0) readonly buffer ForwardPassTable { ForwardPass forward_pass; };
-
-// Of the receiver's image.
-float film_aspect() { return float(forward_pass.width) / float(forward_pass.height); }
-float pixel_count() { return float(forward_pass.width) * float(forward_pass.height); }
-uint pixel_of(vec2 film) {
-    uvec2 size = uvec2(forward_pass.width, forward_pass.height);
-    uvec2 pixel = min(uvec2(film * vec2(size)), size - 1u);
-    return pixel.y * size.x + pixel.x;
-}
