@@ -38,6 +38,17 @@ nlohmann::json stats_of(const ViewedScene& view) {
 
 void sleep_seconds(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 
+// KiB that the process holds once it rests. Kernels that are compiled while passes run take tens of megabytes
+// of the compiler's for a while.
+double resting_kib(pid_t process) {
+    for (int i = 0; i < 120; ++i) {
+        const double before = processor_seconds(process);
+        sleep_seconds(0.5);
+        if (processor_seconds(process) - before < 0.05) break;
+    }
+    return resident_kib(process);
+}
+
 }  // namespace
 
 TEST_CASE("a window that is resized 50 times shows the image of its last size and leaks nothing") {
@@ -51,7 +62,7 @@ TEST_CASE("a window that is resized 50 times shows the image of its last size an
         if (i == 9) {
             view.x.resize(400, 300);
             REQUIRE(shows(view.x, large, {}));
-            settled = resident_kib(view.process);
+            settled = resting_kib(view.process);
         }
     }
     view.x.resize(200, 160);
@@ -59,7 +70,7 @@ TEST_CASE("a window that is resized 50 times shows the image of its last size an
     view.x.resize(400, 300);
     CHECK(shows(view.x, large, {}));
     // 40 swapchains of that size would hold 40 x 4 images of half a megabyte.
-    CHECK(resident_kib(view.process) < settled + 32 * 1024);
+    CHECK(resting_kib(view.process) < settled + 32 * 1024);
     CHECK(view.close().err == "");
     const nlohmann::json stats = stats_of(view);
     CHECK(stats["device_bytes"].get<double>() < 60e6);
