@@ -5,6 +5,7 @@
 namespace etendue {
 
 int render_command(const RenderOptions& options);
+int measure_command(const MeasureOptions& options);
 int merge_command(const MergeOptions& options);
 int compare_command(const CompareOptions& options);
 int bench_command(const BenchOptions& options);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "host/image/atomic_file.h"
+
 namespace etendue {
 
 std::string escaped(const std::string& text) {
@@ -20,6 +22,14 @@ std::string escaped(const std::string& text) {
             html += c;
     }
     return html;
+}
+
+std::string inline_svg(const std::filesystem::path& path) {
+    if (!std::filesystem::exists(path)) return "";
+    const auto bytes = read_whole_file(path);
+    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const size_t begin = text.find("<svg");
+    return begin == std::string::npos ? "" : text.substr(begin);
 }
 
 std::string base64(std::span<const std::byte> bytes) {  // RFC 4648

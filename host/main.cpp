@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
                                      return 0;
                                  },
                                  [](const RenderOptions& o) { return render_command(o); },
+                                 [](const MeasureOptions& o) { return measure_command(o); },
                                  [](const MergeOptions& o) { return merge_command(o); },
                                  [](const CompareOptions& o) { return compare_command(o); },
                                  [](const BenchOptions& o) { return bench_command(o); },

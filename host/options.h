@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ struct ImageSize {
     uint32_t width = 0, height = 0;
 };
 
-// What render, inspect and bench open.
+// What render, measure, inspect and bench open.
 struct SceneChoice {
     std::filesystem::path scene;
     std::filesystem::path environment;  // image that takes the place of the scene's environment; may be empty
@@ -46,6 +47,23 @@ struct RenderOptions : SceneChoice {
     std::filesystem::path checkpoint, resume, stats;  // empty = none
     bool aovs = false, quiet = false;
     std::string command_line;  // as typed, for the image's attributes
+};
+
+struct MeasureOptions : SceneChoice {
+    std::filesystem::path output;        // folder; empty = none, of a part
+    std::vector<std::string> receivers;  // names; empty = all that measure
+    uint64_t first_pass = 0;             // as for render; whole sixteens
+    std::optional<uint64_t> passes;      // exactly one of the three goals is set
+    std::optional<double> seconds, error;
+    bool worst = false;  // `error` is that of the worst pixel, not of the mean
+    Algorithm algorithm = Algorithm::automatic;
+    std::optional<double> forward_paths;  // as for render
+    uint64_t vertex_bytes = uint64_t(256) << 20;
+    uint64_t seed = 0;
+    std::vector<glm::dvec2> points;  // of meters, for uniformity, in parts of width and height; empty = none
+    std::filesystem::path checkpoint, resume;  // empty = none
+    bool quiet = false;
+    std::string command_line;
 };
 
 struct ViewOptions : SceneChoice {  // `size`: of the window, in pixels

@@ -1,12 +1,8 @@
 // The plots of a bench, drawn by gnuplot.
 #include <fmt/format.h>
-#include <signal.h>
-#include <sys/wait.h>
-
-#include <cstdio>
-#include <cstdlib>
 
 #include "host/bench/report.h"
+#include "host/gnuplot.h"
 
 namespace etendue {
 namespace {
@@ -14,13 +10,6 @@ namespace {
 // Okabe and Ito's palette, which colour-blind readers can tell apart too.
 constexpr const char* colors[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                   "#e69f00", "#56b4e9", "#000000", "#999999"};
-
-// gnuplot's text in single quotes; a quote is doubled.
-std::string quoted(const std::string& text) {
-    std::string result = "'";
-    for (char c : text) result += c == '\'' ? "''" : std::string(1, c);
-    return result + "'";
-}
 
 struct Axis {
     const char* name;
@@ -42,7 +31,7 @@ std::string plot(const std::filesystem::path& file, const std::string& title, co
         lines += fmt::format(
             "{}$curve{} with linespoints linewidth 2 pointtype 7 pointsize 0.5 linecolor "
             "rgb '{}' title {}",
-            lines.empty() ? "" : ", ", i, colors[i % std::size(colors)], quoted(curves[i].algorithm));
+            lines.empty() ? "" : ", ", i, colors[i % std::size(colors)], quoted_for_gnuplot(curves[i].algorithm));
     }
     if (lines.empty()) return "";
     if (reference_relmse > 0)
@@ -51,7 +40,7 @@ std::string plot(const std::filesystem::path& file, const std::string& title, co
             reference_relmse);
     return fmt::format(
         "{}set output {}\nset title {}\nset xlabel '{}'\nset ylabel 'relMSE'\nplot {}\nunset output\n", data,
-        quoted(file.string()), quoted(title), axis.label, lines);
+        quoted_for_gnuplot(file.string()), quoted_for_gnuplot(title), axis.label, lines);
 }
 
 }  // namespace
@@ -69,15 +58,7 @@ std::string draw_plots(const std::filesystem::path& folder, const BenchResults& 
             script += plot(file, scene.name, axis, all, scene.reference_relmse);
         }
     }
-    if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
-        return "no plots: gnuplot is not installed (on Debian: gnuplot-nox)";
-    const auto before = signal(SIGPIPE, SIG_IGN);  // where gnuplot ends early
-    std::FILE* gnuplot = popen("gnuplot 2>/dev/null", "w");
-    const bool sent = gnuplot && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-    const int status = gnuplot ? pclose(gnuplot) : -1;
-    signal(SIGPIPE, before);
-    const bool drawn = sent && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-    return drawn ? "" : "no plots: gnuplot failed";
+    return run_gnuplot(script);
 }
 
 }  // namespace etendue

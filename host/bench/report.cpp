@@ -38,31 +38,6 @@ std::string shown_time(const std::vector<BenchLevel>& levels, double target) {
     return fmt::format("{}{}", sign, shown_seconds(crossing.x));
 }
 
-// Columns of UTF-8 text whose characters are one column wide each.
-size_t columns_of(const std::string& text) {
-    return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-std::string html_table(const Table& table) {
-    std::string html = "<table>\n";
-    for (size_t r = 0; r < table.size(); ++r) {
-        html += "<tr>";
-        const char* cell = r == 0 ? "th" : "td";
-        for (const std::string& text : table[r]) html += fmt::format("<{0}>{1}</{0}>", cell, escaped(text));
-        html += "</tr>\n";
-    }
-    return html + "</table>\n";
-}
-
-// The SVG element of a file, without what may only stand at the head of a file; empty where there is none.
-std::string inline_svg(const std::filesystem::path& path) {
-    if (!std::filesystem::exists(path)) return "";
-    const auto bytes = read_whole_file(path);
-    const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    const size_t begin = text.find("<svg");
-    return begin == std::string::npos ? "" : text.substr(begin);
-}
-
 std::string scene_section(const std::filesystem::path& folder, const BenchResults& results,
                           const BenchScene& scene) {
     const std::vector<BenchCurve> all = curves(results, scene);
@@ -72,7 +47,7 @@ std::string scene_section(const std::filesystem::path& folder, const BenchResult
         escaped(scene.name), escaped(scene.file), scene.width, scene.height, escaped(scene.device),
         escaped(scene.reference),
         scene.reference_relmse > 0 ? fmt::format("{:.2g}", scene.reference_relmse) : "taken for 0");
-    html += html_table(summary_table(all));
+    html += as_html(summary_table(all));
     for (const BenchCurve& curve : all)
         if (curve.left_out > 0)
             html += fmt::format(
@@ -121,21 +96,6 @@ Table summary_table(const std::vector<BenchCurve>& curves) {
         table.push_back(row);
     }
     return table;
-}
-
-std::string as_text(const Table& table) {
-    std::vector<size_t> widths(table.front().size(), 0);
-    for (const auto& row : table)
-        for (size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], columns_of(row[c]));
-    std::string text;
-    for (const auto& row : table) {
-        for (size_t c = 0; c < row.size(); ++c) {
-            const std::string space(widths[c] - columns_of(row[c]), ' ');
-            text += c == 0 ? row[c] + space : "  " + space + row[c];
-        }
-        text += "\n";
-    }
-    return text;
 }
 
 void write_page(const std::filesystem::path& folder, const BenchResults& results) {

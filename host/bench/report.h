@@ -1,15 +1,12 @@
 // The results of a bench for readers: a table as text, and a page with tables, plots and images.
 #pragma once
 #include "host/bench/results.h"
+#include "host/table.h"
 
 namespace etendue {
 
-using Table = std::vector<std::vector<std::string>>;  // rows of cells; the first names the columns
-
 // A row an algorithm: its longest renders, slopes, and the time to each of some errors.
 Table summary_table(const std::vector<BenchCurve>& curves);
-
-std::string as_text(const Table& table);  // columns aligned
 
 // Draws FOLDER/SCENE.seconds.svg and SCENE.rays.svg of every scene with gnuplot. Where that fails, returns
 // one line that says why; else nothing.

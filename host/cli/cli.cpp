@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "host/cli/measure.h"
 #include "host/cli/merge.h"
 #include "host/cli/rays.h"
 #include "host/cli/render.h"
@@ -167,6 +168,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
 
     RenderOptions render_options;
     RenderArguments render_arguments;
+    MeasureOptions measure_options;
+    MeasureArguments measure_arguments;
     CompareOptions compare_options;
     std::optional<std::string> max_relmse;
     BenchOptions bench_options;
@@ -182,6 +185,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     ClassesOptions classes_options;
     std::optional<std::string> classes_passes;
     CLI::App* render = add_render(app, render_options, render_arguments);
+    CLI::App* measure = add_measure(app, measure_options, measure_arguments);
     CLI::App* compare = add_compare(app, compare_options, max_relmse);
     CLI::App* bench = add_bench(app, bench_options, bench_arguments);
     CLI::App* view = add_view(app, view_options, view_arguments);
@@ -192,14 +196,14 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
 
-    const auto commands = {render, merge, view, rays, compare, bench, inspect, classes, devices};
+    const auto commands = {render, measure, merge, view, rays, compare, bench, inspect, classes, devices};
     std::string first = argc < 2 ? "" : argv[1];
     bool known = first.starts_with("-");
     for (CLI::App* command : commands) known = known || first == command->get_name();
     if (!known)
         fail_input(
-            "{}; one of: render, merge, view, rays, compare, bench, inspect, classes, devices (see etendue "
-            "--help)",
+            "{}; one of: render, measure, merge, view, rays, compare, bench, inspect, classes, devices (see "
+            "etendue --help)",
             argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
 
     CLI::App* chosen = &app;
@@ -222,6 +226,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     if (render->parsed()) {
         finish_render(render_options, render_arguments, quoted_command(argc, argv));
         return render_options;
+    }
+    if (measure->parsed()) {
+        finish_measure(measure_options, measure_arguments, quoted_command(argc, argv));
+        return measure_options;
     }
     if (merge->parsed()) {
         finish_merge(merge_options, merge_passes, quoted_command(argc, argv));

@@ -11,7 +11,7 @@ struct DevicesOptions {};
 struct TextAnswer {  // --help and --version
     std::string text;
 };
-using CommandLine = std::variant<TextAnswer, RenderOptions, MergeOptions, CompareOptions, BenchOptions, ViewOptions,
+using CommandLine = std::variant<TextAnswer, RenderOptions, MeasureOptions, MergeOptions, CompareOptions, BenchOptions, ViewOptions,
                                  RaysOptions, InspectOptions, ClassesOptions, DevicesOptions>;
 
 // Fails with one line (exit code 2) where the arguments are wrong.

@@ -12,22 +12,6 @@ nlohmann::json finite_or_null(double x) { return std::isfinite(x) ? nlohmann::js
 
 double per_second(uint64_t count, double seconds) { return seconds > 0 ? double(count) / seconds : 0.0; }
 
-// Forward rays carry power. Cameras take none: what is neither absorbed nor lost has left the scene. Russian
-// roulette takes from some paths what it gives to others; what is left of that is noise.
-nlohmann::json flux_balance(const RenderCounters& c, double power) {
-    const double lumens = power / double(c.forward_paths);  // a unit of the counters
-    const double escaped = c.forward_escaped * lumens;
-    return {{"unit", "lm"},
-            {"emitted", c.emitted * lumens},
-            {"received", 0.0},
-            {"absorbed", c.absorbed * lumens},
-            {"roulette", c.roulette * lumens},
-            {"lost",
-             {{"escaped", escaped},
-              {"depth_limit", c.forward_depth_limit_lost * lumens},
-              {"non_finite", c.forward_non_finite}}}};
-}
-
 // Backward rays carry importance: 1 a path. What leaves the scene is received by its surroundings; what is
 // neither received nor lost was absorbed.
 nlohmann::json importance_balance(const RenderCounters& c, double paths) {
@@ -97,6 +81,22 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
 }
 
 }  // namespace
+
+// Forward rays carry power. Cameras take none: what is neither absorbed nor lost has left the scene. Russian
+// roulette takes from some paths what it gives to others; what is left of that is noise.
+nlohmann::json flux_balance(const RenderCounters& c, double power) {
+    const double lumens = power / double(c.forward_paths);  // a unit of the counters
+    const double escaped = c.forward_escaped * lumens;
+    return {{"unit", "lm"},
+            {"emitted", c.emitted * lumens},
+            {"received", 0.0},
+            {"absorbed", c.absorbed * lumens},
+            {"roulette", c.roulette * lumens},
+            {"lost",
+             {{"escaped", escaped},
+              {"depth_limit", c.forward_depth_limit_lost * lumens},
+              {"non_finite", c.forward_non_finite}}}};
+}
 
 void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
                  const Scene& scene, const Renderer& renderer, const RelativeError& error,

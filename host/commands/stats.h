@@ -7,6 +7,9 @@
 
 namespace etendue {
 
+// Where the flux of forward rays has gone, lm; `power`: of all lights.
+nlohmann::json flux_balance(const RenderCounters& counters, double power);
+
 // `error`: the estimated relative error of the image; `setup_seconds`: before the first pass.
 void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
                  const Scene& scene, const Renderer& renderer, const RelativeError& error,

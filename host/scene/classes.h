@@ -60,7 +60,7 @@ struct ClassInfo {
     bool is_crystal = false;         // NAME_crystal is there: it refracts doubly
     bool has_aperture = false, has_receptor = false,
          is_far = false;               // of receivers (interfaces/receiver.glsl)
-    std::string pixel_unit;            // of receivers; empty = a radiance
+    std::string pixel_unit;            // of receivers that measure; empty = a camera
     bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization
     bool has_body_mueller = false;     // light leaves its body (shaders/features/body_mueller.glsl)
     bool has_general_mueller = false;  // its matrices are not of two blocks (shaders/lib/stokes.glsl)

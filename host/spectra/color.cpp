@@ -14,6 +14,7 @@ constexpr double lumens_a_watt = 683;
 struct Observer {
     std::array<glm::dvec3, spectrum_samples> xyz, rgb, factor;
     SpectralTable white;
+    glm::dmat3 xyz_from_rgb;
 
     Observer() {
         const SpectralTable x = library_table("CIE 1931 x", Outside::zero),
@@ -30,8 +31,8 @@ struct Observer {
         const glm::dmat3 primaries(glm::dvec3(0.64, 0.33, 0.03), glm::dvec3(0.30, 0.60, 0.10),
                                    glm::dvec3(0.15, 0.06, 0.79));
         const glm::dvec3 scale = glm::inverse(primaries) * (sum / sum.y);
-        const glm::dmat3 rgb_from_xyz =
-            glm::inverse(glm::dmat3(primaries[0] * scale.x, primaries[1] * scale.y, primaries[2] * scale.z));
+        xyz_from_rgb = glm::dmat3(primaries[0] * scale.x, primaries[1] * scale.y, primaries[2] * scale.z);
+        const glm::dmat3 rgb_from_xyz = glm::inverse(xyz_from_rgb);
         for (int i = 0; i < spectrum_samples; ++i) {
             rgb[i] = rgb_from_xyz * xyz[i];
             factor[i] = rgb[i] * double(white.values[i]);
@@ -88,6 +89,8 @@ bool is_grey(const glm::dvec3& rgb) { return rgb.x == rgb.y && rgb.y == rgb.z; }
 
 glm::dvec3 xyz_of_radiance(const SpectralTable& radiance) { return weighted_sum(radiance, observer().xyz); }
 glm::dvec3 rgb_of_radiance(const SpectralTable& radiance) { return weighted_sum(radiance, observer().rgb); }
+glm::dvec3 xyz_of_rgb(const glm::dvec3& rgb) { return observer().xyz_from_rgb * rgb; }
+
 double luminance(const glm::dvec3& rgb) { return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 const std::array<glm::dvec3, spectrum_samples>& rgb_weights() { return observer().rgb; }
 const SpectralTable& white_light() { return observer().white; }

@@ -16,7 +16,8 @@
 //   ReceiverSample NAME_far(R r, vec3 direction, float film_aspect)   what light that leaves the scene along `direction` adds: the flux F
 //                               adds F * density * weight to the mean over the film; pdf is 1
 //
-// A pixel is a radiance, or what the line "A pixel: UNIT." of the class's comment says.
+// A pixel of a camera is a radiance; that of a meter, which measures and shows no picture, what the words "A pixel: UNIT." of the
+// class's comment say.
 //
 // Every record begins with the Placement of the node.
 //

@@ -1,5 +1,5 @@
 // A luminance meter: the mean luminance within a narrow cone around -z of its node, as a spot meter shows it. With more than one pixel,
-// columns divide the turn about the axis and rows the solid angle, from the axis outwards.
+// columns divide the turn about the axis and rows the solid angle, from the axis outwards. A pixel: cd/m².
 //
 // Example:
 //     {"nodes": [{"name": "meter", "translation": [0.2, 1.1, 4], "extensions": {"ETD_optics": {

@@ -1,0 +1,113 @@
+#include "host/commands/measure_checkpoint.h"
+
+#include <cstring>
+
+#include "host/error.h"
+
+namespace etendue {
+namespace {
+
+template <class T>
+std::vector<T> array_of(Checkpoint& checkpoint, const std::filesystem::path& path, const std::string& name,
+                        size_t count) {
+    const auto& bytes = checkpoint_array(checkpoint, path, name, count * sizeof(T));
+    std::vector<T> values(count);
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+}
+
+template <class T>
+void add_array(Checkpoint& checkpoint, const std::string& name, const std::vector<T>& values) {
+    const auto bytes = std::as_bytes(std::span(values));
+    checkpoint.arrays.push_back({name, {bytes.begin(), bytes.end()}});
+}
+
+std::string array_name(size_t meter, const char* what) { return fmt::format("{} of meter {}", what, meter); }
+
+}  // namespace
+
+nlohmann::json measurement_identity(const nlohmann::json& sources, const MeasureOptions& options,
+                                    const Scene& scene, const MeasurementRun& run) {
+    nlohmann::json meters = nlohmann::json::array();
+    for (const Readings& readings : run.measurement().meters) {
+        const AlgorithmChoice& choice = readings.choice;
+        meters.push_back({{"name", readings.meter.name},
+                          {"size", fmt::format("{}x{}", readings.meter.columns, readings.meter.rows)},
+                          {"algorithm", algorithm_name(choice.algorithm)},
+                          {"forward-paths", choice.algorithm == Algorithm::backward ? 0.0 : choice.forward_paths}});
+    }
+    nlohmann::json identity = sources;
+    identity.update({{"meters", meters},
+                     {"replicates", replicates},
+                     {"seed", options.seed},
+                     {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
+                     {"vertex-memory", options.vertex_bytes >> 20},
+                     {"color", scene.features.spectral ? "spectral" : "rgb"},
+                     {"polarization", scene.features.polarization}});
+    return identity;
+}
+
+bool is_measurement(const Checkpoint& checkpoint) { return checkpoint.identity.contains("replicates"); }
+
+Checkpoint to_checkpoint(const nlohmann::json& identity, const Measurement& measurement,
+                         const std::vector<std::string>& devices, const MeasureOptions& options) {
+    Checkpoint checkpoint;
+    checkpoint.identity = identity;
+    checkpoint.passes = measurement.passes;
+    nlohmann::json meters = nlohmann::json::array(), points = nlohmann::json::array();
+    for (size_t m = 0; m < measurement.meters.size(); ++m) {
+        const Readings& readings = measurement.meters[m];
+        meters.push_back({{"name", readings.meter.name},
+                          {"unit", readings.meter.unit},
+                          {"columns", readings.meter.columns},
+                          {"rows", readings.meter.rows},
+                          {"is_far", readings.meter.is_far},
+                          {"has_extent", readings.meter.has_extent},
+                          {"counters", to_json(readings.counters)},
+                          {"choice", to_json(readings.choice)}});
+        add_array(checkpoint, array_name(m, "sums"), readings.sums);
+        add_array(checkpoint, array_name(m, "places"), readings.meter.places);
+    }
+    for (const glm::dvec2& point : options.points) points.push_back({point.x, point.y});
+    checkpoint.about = {{"meters", meters},
+                        {"points", points},
+                        {"seconds", measurement.seconds},
+                        {"power", measurement.power},
+                        {"scene", options.scene.string()},
+                        {"devices", devices}};
+    return checkpoint;
+}
+
+Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& path) {
+    Measurement measurement;
+    measurement.passes = checkpoint.passes;
+    measurement.seconds = checkpoint.about.at("seconds");
+    measurement.power = checkpoint.about.at("power");
+    for (const nlohmann::json& json : checkpoint.about.at("meters")) {
+        const size_t m = measurement.meters.size();
+        Readings& readings = measurement.meters.emplace_back();
+        Meter& meter = readings.meter;
+        meter.name = json.at("name"), meter.unit = json.at("unit");
+        meter.columns = json.at("columns"), meter.rows = json.at("rows");
+        meter.is_far = json.at("is_far"), meter.has_extent = json.at("has_extent");
+        meter.places = array_of<PixelPlace>(checkpoint, path, array_name(m, "places"), meter.pixels());
+        readings.sums = array_of<ExactSum>(checkpoint, path, array_name(m, "sums"), meter.pixels() * replicates);
+        readings.counters = counters_from_json(json.at("counters"));
+        readings.choice = choice_from_json(json.at("choice"));
+        readings.passes = checkpoint.passes.count() / replicates;
+    }
+    return measurement;
+}
+
+void add(Measurement& all, const Measurement& part) {
+    all.passes.add(part.passes);
+    all.seconds += part.seconds;
+    for (size_t m = 0; m < all.meters.size(); ++m) {
+        Readings& readings = all.meters[m];
+        merge(std::span(readings.sums), std::span<const ExactSum>(part.meters[m].sums));
+        add(readings.counters, part.meters[m].counters);
+        readings.passes = all.passes.count() / replicates;
+    }
+}
+
+}  // namespace etendue

@@ -1,0 +1,255 @@
+#include "host/measure/figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "host/error.h"
+#include "host/spectra/color.h"
+#include "host/spectra/chromaticity.h"
+
+namespace etendue {
+namespace {
+
+double mean_of(const Series& series) {
+    return std::accumulate(series.begin(), series.end(), 0.0) / double(series.size());
+}
+
+// Luminous values of the pixels: replicate after replicate.
+std::vector<std::vector<double>> luminous_values(const Readings& readings) {
+    std::vector<std::vector<double>> values(replicates);
+    for (uint32_t k = 0; k < replicates; ++k)
+        for (const glm::dvec3& rgb : replicate_means(readings, k)) values[k].push_back(luminance(rgb));
+    return values;
+}
+
+// A weight a pixel, of sum 1, by the extents.
+std::vector<double> weights_of(const Meter& meter) {
+    std::vector<double> weights(meter.pixels(), 1.0 / double(meter.pixels()));
+    if (!meter.has_extent) return weights;
+    double sum = 0;
+    for (const PixelPlace& place : meter.places) sum += place.extent;
+    for (size_t i = 0; i < weights.size(); ++i) weights[i] = meter.places[i].extent / sum;
+    return weights;
+}
+
+double extent_of(const Meter& meter) {
+    double sum = 0;
+    for (const PixelPlace& place : meter.places) sum += place.extent;
+    return sum;
+}
+
+Series weighted(const std::vector<std::vector<double>>& values, const std::vector<double>& weights) {
+    Series series;
+    for (const auto& replicate : values)
+        series.push_back(std::inner_product(replicate.begin(), replicate.end(), weights.begin(), 0.0));
+    return series;
+}
+
+// Each replicate where the others have their extreme, by `sign` the greatest or (-1) the least.
+Series extreme(const std::vector<std::vector<double>>& values, double sign) {
+    std::vector<double> sums(values[0].size(), 0.0);
+    for (const auto& replicate : values)
+        for (size_t i = 0; i < sums.size(); ++i) sums[i] += replicate[i];
+    Series series;
+    for (const auto& replicate : values) {
+        size_t best = 0;
+        for (size_t i = 1; i < sums.size(); ++i)
+            if (sign * (sums[i] - replicate[i]) > sign * (sums[best] - replicate[best])) best = i;
+        series.push_back(replicate[best]);
+    }
+    return series;
+}
+
+std::string place_text(const Meter& meter, size_t pixel) {
+    const uint32_t column = uint32_t(pixel % meter.columns), row = uint32_t(pixel / meter.columns);
+    if (meter.is_far)
+        return fmt::format("C {:.5g}°, γ {:.5g}°", c_angle(meter, column), gamma_angle(meter, row));
+    const glm::vec3 p = meter.places[pixel].position;
+    return fmt::format("column {}, row {}: {:.4g}, {:.4g}, {:.4g} m", column, row, p.x, p.y, p.z);
+}
+
+size_t extreme_pixel(const std::vector<std::vector<double>>& values, double sign) {
+    size_t best = 0;
+    double most = -INFINITY;
+    for (size_t i = 0; i < values[0].size(); ++i) {
+        double sum = 0;
+        for (const auto& replicate : values) sum += sign * replicate[i];
+        if (sum > most) most = sum, best = i;
+    }
+    return best;
+}
+
+// Bilinear between the pixels' middles.
+double at_point(const std::vector<double>& values, const Meter& meter, const MeterPoint& point) {
+    const glm::dvec2 size(meter.columns, meter.rows);
+    const glm::dvec2 at = glm::clamp(point * size - 0.5, glm::dvec2(0), size - 1.0);
+    const glm::uvec2 lo = glm::uvec2(at), hi = glm::min(lo + 1u, glm::uvec2(size) - 1u);
+    const glm::dvec2 t = at - glm::dvec2(lo);
+    const auto pixel = [&](uint32_t x, uint32_t y) { return values[size_t(y) * meter.columns + x]; };
+    return glm::mix(glm::mix(pixel(lo.x, lo.y), pixel(hi.x, lo.y), t.x),
+                    glm::mix(pixel(lo.x, hi.y), pixel(hi.x, hi.y), t.x), t.y);
+}
+
+double ratio(const std::vector<double>& m) { return m[1] != 0 ? m[0] / m[1] : NAN; }
+
+void add_points(std::vector<Figure>& figures, const Meter& meter,
+                const std::vector<std::vector<double>>& values, const std::vector<MeterPoint>& points) {
+    std::vector<std::vector<double>> at_points;
+    for (const auto& replicate : values) {
+        auto& row = at_points.emplace_back();
+        for (const MeterPoint& point : points) row.push_back(at_point(replicate, meter, point));
+    }
+    const Series least = extreme(at_points, -1), greatest = extreme(at_points, 1);
+    const Series mean = weighted(at_points, std::vector<double>(points.size(), 1.0 / double(points.size())));
+    for (size_t i = 0; i < points.size(); ++i) {
+        Series series;
+        for (const auto& row : at_points) series.push_back(row[i]);
+        figures.push_back({fmt::format("point {} ({:.4g}, {:.4g})", i + 1, points[i].x, points[i].y), meter.unit,
+                           mean_interval(series), ""});
+    }
+    figures.push_back({fmt::format("min / max of {} points", points.size()), "",
+                       function_interval({least, greatest}, ratio), ""});
+    figures.push_back({fmt::format("min / mean of {} points", points.size()), "",
+                       function_interval({least, mean}, ratio), ""});
+}
+
+void add_colors(std::vector<Figure>& figures, const Readings& readings, const std::vector<double>& weights) {
+    std::vector<Series> xyz(3);
+    for (uint32_t k = 0; k < replicates; ++k) {
+        const PixelMeans means = replicate_means(readings, k);
+        glm::dvec3 sum(0);
+        for (size_t i = 0; i < means.size(); ++i) sum += weights[i] * means[i];
+        sum = xyz_of_rgb(sum);
+        for (int c = 0; c < 3; ++c) xyz[size_t(c)].push_back(sum[c]);
+    }
+    const auto add = [&](const char* name, const char* unit, auto f) {
+        figures.push_back({name, unit,
+                           function_interval(xyz,
+                                             [&](const std::vector<double>& m) {
+                                                 return f(glm::dvec3(m[0], m[1], m[2]));
+                                             }),
+                           ""});
+    };
+    add("x", "", [](const glm::dvec3& c) { return chromaticity_xy(c).x; });
+    add("y", "", [](const glm::dvec3& c) { return chromaticity_xy(c).y; });
+    add("u'", "", [](const glm::dvec3& c) { return chromaticity_uv(c).x; });
+    add("v'", "", [](const glm::dvec3& c) { return chromaticity_uv(c).y; });
+    const glm::dvec3 mean(mean_of(xyz[0]), mean_of(xyz[1]), mean_of(xyz[2]));
+    if (std::abs(correlated_color_temperature(mean).duv) > most_duv) return;
+    add("CCT", "K", [](const glm::dvec3& c) { return correlated_color_temperature(c).kelvin; });
+    add("Duv", "", [](const glm::dvec3& c) { return correlated_color_temperature(c).duv; });
+}
+
+}  // namespace
+
+double student_factor(size_t samples) {
+    // Of 1 to 20 degrees of freedom; beyond, Cornish & Fisher's expansion (Abramowitz & Stegun 26.7.5).
+    static constexpr double table[] = {12.7062, 4.30265, 3.18245, 2.77645, 2.57058, 2.44691, 2.36462,
+                                       2.30600, 2.26216, 2.22814, 2.20099, 2.17881, 2.16037, 2.14479,
+                                       2.13145, 2.11991, 2.10982, 2.10092, 2.09302, 2.08596};
+    if (samples < 2) return INFINITY;
+    if (samples - 2 < std::size(table)) return table[samples - 2];
+    const double x = 1.959964, n = double(samples - 1);
+    return x + (x * x * x + x) / (4 * n) + (5 * std::pow(x, 5) + 16 * x * x * x + 3 * x) / (96 * n * n);
+}
+
+Interval mean_interval(const Series& series) {
+    const double mean = mean_of(series), n = double(series.size());
+    double squares = 0;
+    for (double x : series) squares += (x - mean) * (x - mean);
+    const double half = student_factor(series.size()) * std::sqrt(squares / (n * (n - 1)));
+    return {mean, mean - half, mean + half};
+}
+
+Interval function_interval(const std::vector<Series>& series,
+                           const std::function<double(const std::vector<double>&)>& f) {
+    const size_t n = series[0].size();
+    std::vector<double> means;
+    for (const Series& s : series) means.push_back(mean_of(s));
+    Series left_out;
+    for (size_t k = 0; k < n; ++k) {
+        std::vector<double> others;
+        for (size_t i = 0; i < series.size(); ++i)
+            others.push_back((double(n) * means[i] - series[i][k]) / double(n - 1));
+        left_out.push_back(f(others));
+    }
+    const double whole = f(means), mean = mean_of(left_out);
+    double squares = 0;
+    for (double x : left_out) squares += (x - mean) * (x - mean);
+    const double half = student_factor(n) * std::sqrt(squares * double(n - 1) / double(n));
+    const double unbiased = double(n) * whole - double(n - 1) * mean;
+    return {unbiased, unbiased - half, unbiased + half};
+}
+
+std::vector<MeterPoint> standard_points(uint32_t count) {
+    std::vector<MeterPoint> points;
+    const double sixths[] = {1.0 / 6, 0.5, 5.0 / 6};
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 3; ++x)
+            if (count != 5 || x % 2 == y % 2) points.push_back({sixths[x], sixths[y]});
+    if (count == 13)
+        for (double y : {0.1, 0.9})
+            for (double x : {0.1, 0.9}) points.push_back({x, y});
+    return points;
+}
+
+std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points) {
+    const Meter& meter = readings.meter;
+    const auto values = luminous_values(readings);
+    const std::vector<double> weights = weights_of(meter);
+    const Series mean = weighted(values, weights), least = extreme(values, -1), greatest = extreme(values, 1);
+    std::vector<Figure> figures;
+    if (meter.has_extent) {
+        const double extent = extent_of(meter);
+        Series flux;
+        for (double x : mean) flux.push_back(extent * x);
+        figures.push_back({"flux", "lm", mean_interval(flux), ""});
+    }
+    figures.push_back({"mean", meter.unit, mean_interval(mean), ""});
+    if (meter.pixels() > 1) {
+        figures.push_back({"minimum", meter.unit, mean_interval(least), place_text(meter, extreme_pixel(values, -1))});
+        figures.push_back({"maximum", meter.unit, mean_interval(greatest), place_text(meter, extreme_pixel(values, 1))});
+    }
+    if (is_dark(readings)) return figures;
+    if (meter.pixels() > 1 && !meter.is_far) {
+        figures.push_back({"U0 = minimum / mean", "", function_interval({least, mean}, ratio), ""});
+        figures.push_back({"Ud = minimum / maximum", "", function_interval({least, greatest}, ratio), ""});
+    }
+    if (!points.empty() && !meter.is_far && meter.pixels() > 1) add_points(figures, meter, values, points);
+    add_colors(figures, readings, weights);
+    return figures;
+}
+
+double relative_error_of_mean(const Readings& readings) {
+    const Interval mean = mean_interval(weighted(luminous_values(readings), weights_of(readings.meter)));
+    return mean.value > 0 ? 0.5 * (mean.high - mean.low) / mean.value : INFINITY;
+}
+
+double relative_error_of_worst(const Readings& readings) {
+    const auto values = luminous_values(readings);
+    const double mean = mean_of(weighted(values, weights_of(readings.meter)));
+    if (!(mean > 0)) return INFINITY;
+    double worst = 0;
+    for (size_t i = 0; i < values[0].size(); ++i) {
+        Series series;
+        for (const auto& replicate : values) series.push_back(replicate[i]);
+        const Interval pixel = mean_interval(series);
+        worst = std::max(worst, 0.5 * (pixel.high - pixel.low) / std::max(pixel.value, 0.01 * mean));
+    }
+    return worst;
+}
+
+bool is_dark(const Readings& readings) {
+    return std::all_of(readings.sums.begin(), readings.sums.end(),
+                       [](const ExactSum& sum) { return value(sum) == glm::dvec3(0); });
+}
+
+std::optional<double> missed_flux(const Readings& readings, double power) {
+    if (readings.counters.forward_paths == 0 || !is_dark(readings)) return {};
+    return 3 * power / double(readings.counters.forward_paths);
+}
+
+}  // namespace etendue

@@ -1,0 +1,58 @@
+// The figures that are told of a meter, each with an interval that holds the truth with 95 % confidence.
+//
+// A figure is a function of means over pixels, each known from every replicate of the render
+// (host/measure/readings.h): a mean's interval is Student's; that of a ratio or of a colour is the jackknife's,
+// which leaves each replicate out in turn (Efron & Stein 1981, "The Jackknife Estimate of Variance"). The least
+// of many noisy pixels is too low; so each replicate is read where the others have their least, and likewise the
+// greatest.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/measure/readings.h"
+
+namespace etendue {
+
+struct Interval {
+    double value = 0, low = 0, high = 0;
+};
+
+// One value of each replicate, of something whose mean is wanted.
+using Series = std::vector<double>;
+Interval mean_interval(const Series& series);
+// Of f(means of the series), by the jackknife. All series are as long.
+Interval function_interval(const std::vector<Series>& series,
+                           const std::function<double(const std::vector<double>&)>& f);
+// Student's t for 95 % of two sides.
+double student_factor(size_t samples);
+
+struct Figure {
+    std::string name;  // "mean", "U0 = min / mean"
+    std::string unit;  // empty = a number
+    Interval interval;
+    std::string where;  // of a minimum or maximum: which pixel; else empty
+};
+
+// A point of a meter, in parts of its width and height from the upper left corner.
+using MeterPoint = glm::dvec2;
+// 5, 9 or 13 points as displays are judged by (IEC 62977 and makers' data sheets): 9 at 1/6, 1/2 and 5/6 of each
+// side; 5: their corners and middle; 13: the 9, and four at 1/10 and 9/10.
+std::vector<MeterPoint> standard_points(uint32_t count);
+
+// `points`: for uniformity; empty = none.
+std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points);
+
+// Half the interval of a meter's mean, by its value: what --error asks. Infinite where it is 0.
+double relative_error_of_mean(const Readings& readings);
+// The same of the worst pixel; pixels below a hundredth of the mean are judged by that.
+double relative_error_of_worst(const Readings& readings);
+
+// Where nothing has arrived: the flux, lm, that may have been missed all the same, with 95 % confidence: of n
+// paths from the lights none came, so at most 3 / n of their flux does (rule of three; Hanley & Lippman-Hand
+// 1983). Nothing where light has arrived, or no paths started at lights.
+std::optional<double> missed_flux(const Readings& readings, double power);
+bool is_dark(const Readings& readings);
+
+}  // namespace etendue

@@ -1,0 +1,47 @@
+// A measurement: what several meters of a scene read in the same passes.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "host/image/pass_set.h"
+#include "host/measure/readings.h"
+
+namespace etendue {
+
+struct Measurement {
+    std::vector<Readings> meters;
+    PassSet passes;      // whole sixteens (`replicates`)
+    double seconds = 0;  // of rendering
+    double power = 0;    // of the scene's lights, lm
+};
+
+// What `auto` comes to for a meter: backward rays where they find all light, else both ways; no pilot is run, so
+// that every machine chooses the same.
+AlgorithmChoice choose_for_meter(Device& device, Scene& scene, const Receiver& receiver);
+
+// Adds passes to a measurement.
+class MeasurementRun {
+  public:
+    // `settings`: what all meters have in common. Each meter has a renderer of its own; programs are shared.
+    MeasurementRun(Device& device, Scene& scene, const std::vector<const Receiver*>& receivers,
+                   const RenderSettings& settings);
+    ~MeasurementRun();
+
+    // Passes [range.first, range.end), whole sixteens, of all meters. False: `interrupt` ended it, and nothing
+    // was added.
+    bool add(const PassRange& range, const std::function<bool()>& interrupt);
+
+    const Measurement& measurement() const { return measurement_; }
+    Measurement& measurement() { return measurement_; }
+    uint64_t rays() const;
+    const std::vector<std::unique_ptr<Renderer>>& renderers() const { return renderers_; }
+
+  private:
+    Scene& scene_;
+    uint32_t seed_;
+    std::vector<FilmView> views_;
+    std::vector<std::unique_ptr<Renderer>> renderers_;
+    Measurement measurement_;
+};
+
+}  // namespace etendue

@@ -1,0 +1,87 @@
+// The page of a measurement.
+#include <fmt/format.h>
+
+#include "host/html.h"
+#include "host/image/atomic_file.h"
+#include "host/measure/report.h"
+
+namespace etendue {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* head =
+    "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Measurement</title><style>\n"
+    "body{font:15px/1.45 sans-serif;max-width:75rem;margin:2rem auto;padding:0 1rem;color:#222}\n"
+    "table{border-collapse:collapse;margin:.6rem 0}th,td{padding:.15rem .7rem;border-bottom:1px solid #ddd;"
+    "text-align:right}th:first-child,td:first-child,td:last-child,th:last-child{text-align:left}\n"
+    "figure{margin:.5rem 0;display:inline-block;vertical-align:top}img,svg{max-width:100%}\n"
+    ".note{color:#a33}dt{font-weight:bold}</style></head><body>\n";
+
+std::string shown(const Attribute& attribute) {
+    if (const auto* text = std::get_if<std::string>(&attribute)) return *text;
+    return fmt::format("{:.10g}", std::get<double>(attribute));
+}
+
+// Where the light has gone, by the forward rays of all meters together.
+std::string ledger(const Measurement& measurement) {
+    RenderCounters all;
+    for (const Readings& readings : measurement.meters) add(all, readings.counters);
+    if (all.forward_paths == 0) return "";
+    const double lumens = measurement.power / double(all.forward_paths);
+    Table table = {{"light", "lm", "share of the emitted", ""}};
+    const auto row = [&](const char* name, double flux, const char* text) {
+        table.push_back({name, fmt::format("{:.6g}", flux * lumens),
+                         all.emitted > 0 ? fmt::format("{:.4f} %", 100 * flux / all.emitted) : "–", text});
+    };
+    row("emitted", all.emitted, "by forward rays");
+    row("absorbed", all.absorbed, "by surfaces and media");
+    row("escaped", all.forward_escaped, "left the scene");
+    row("lost", all.forward_depth_limit_lost, "at the depth limit");
+    row("roulette", all.roulette, "taken by Russian roulette less what it gave back: noise around 0");
+    row("difference",
+        all.emitted - all.absorbed - all.forward_escaped - all.forward_depth_limit_lost - all.roulette,
+        "rounding");
+    return "<h2>Balance of power</h2>\n" + as_html(table) +
+           "<p>Meters take no light: what they read passes on and ends in one of these lines.</p>\n";
+}
+
+std::string meter_section(const ReportOptions& options, const Measurement& measurement, const Readings& readings,
+                          const std::string& name) {
+    const Meter& meter = readings.meter;
+    std::string html = fmt::format(
+        "<h2>{}</h2>\n<p>{} × {} pixels, {}; {}: {}.</p>\n", escaped(meter.name), meter.columns, meter.rows,
+        meter.unit, algorithm_name(readings.choice.algorithm), escaped(readings.choice.reason));
+    html += as_html(figure_table(readings, figures_of(readings, options.points)));
+    if (is_dark(readings)) {
+        const auto missed = missed_flux(readings, measurement.power);
+        html += fmt::format("<p class=\"note\">No light has arrived{}.</p>\n",
+                            missed ? fmt::format(": with 95 % confidence its flux is below {:.3g} lm", *missed)
+                                   : std::string(" by backward rays; how much they may have missed they do not tell"));
+    }
+    const fs::path stem = options.folder / name;
+    if (const fs::path map = stem.string() + ".map.png"; fs::exists(map))
+        html += fmt::format("<figure><img alt=\"{} in false colours\" src=\"data:image/png;base64,{}\"></figure>\n",
+                            escaped(meter.name), base64(read_whole_file(map)));
+    for (const char* plot : {".sections.svg", ".polar.svg"})
+        if (const std::string svg = inline_svg(stem.string() + plot); !svg.empty())
+            html += "<figure>" + svg + "</figure>\n";
+    return html;
+}
+
+}  // namespace
+
+std::string page_of(const ReportOptions& options, const Measurement& measurement) {
+    std::string html = head;
+    html += "<h1>Measurement</h1>\n<dl>\n";
+    for (const auto& [name, value] : options.attributes)
+        html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(name), escaped(shown(value)));
+    html += "</dl>\n<p>Intervals hold the truth with 95 % confidence, by the spread of " +
+            fmt::format("{} independent renders.</p>\n", replicates);
+    const std::vector<std::string> names = file_names(measurement);
+    for (size_t m = 0; m < names.size(); ++m)
+        html += meter_section(options, measurement, measurement.meters[m], names[m]);
+    return html + ledger(measurement) + "</body></html>\n";
+}
+
+}  // namespace etendue

@@ -1,0 +1,69 @@
+#include "host/measure/readings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace etendue {
+namespace {
+
+std::vector<PixelPlace> pixel_places(Device& device, Scene& scene, const Receiver& receiver, uint32_t columns,
+                                     uint32_t rows) {
+    const uint32_t pixels = columns * rows;
+    const Buffer buffer(device, uint64_t(pixels) * sizeof(PixelPlace), "PixelPlaces");
+    const Kernel kernel =
+        make_color_kernel(device, scene, "kernels/measure_receivers.comp", {{"PixelPlaces", &buffer}});
+    CommandList commands(device);
+    commands.dispatch(kernel, (pixels + kernel.group_size() - 1) / kernel.group_size(),
+                      {{"first", 0u},
+                       {"last", pixels},
+                       {"columns", columns},
+                       {"rows", rows},
+                       {"receiver", receiver.ref}});
+    commands.run();
+    return buffer.read_array<PixelPlace>(pixels);
+}
+
+}  // namespace
+
+Meter describe_meter(Device& device, Scene& scene, const Receiver& receiver) {
+    const ClassInfo& info = *receiver.info;
+    Meter meter{receiver.name, info.pixel_unit, receiver.columns, receiver.rows, info.is_far,
+                info.is_far || info.has_receptor, {}};
+    meter.places = pixel_places(device, scene, receiver, meter.columns, meter.rows);
+    for (PixelPlace& place : meter.places) place.position += glm::vec3(scene.center);
+    return meter;
+}
+
+double c_angle(const Meter& meter, uint32_t column) { return 360.0 * column / meter.columns; }
+double gamma_angle(const Meter& meter, uint32_t row) { return 180.0 * row / (meter.rows - 1.0); }
+
+PixelMeans replicate_means(const Readings& readings, uint32_t replicate) {
+    PixelMeans means(readings.meter.pixels());
+    for (size_t i = 0; i < means.size(); ++i)
+        means[i] = value(readings.sums[i * replicates + replicate]) / double(std::max<uint64_t>(readings.passes, 1));
+    return means;
+}
+
+Image to_image(const Readings& readings) {
+    const size_t pixels = readings.meter.pixels();
+    std::vector<glm::vec3> means(pixels), errors(pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+        glm::dvec3 sum(0), squares(0);
+        for (uint32_t k = 0; k < replicates; ++k) {
+            const glm::dvec3 x = value(readings.sums[i * replicates + k]) / double(readings.passes);
+            sum += x, squares += x * x;
+        }
+        const glm::dvec3 mean = sum / double(replicates);
+        const glm::dvec3 spread = glm::max(squares / double(replicates) - mean * mean, glm::dvec3(0));
+        means[i] = mean;
+        errors[i] = glm::sqrt(spread / double(replicates - 1));
+    }
+    Image image;
+    image.width = readings.meter.columns, image.height = readings.meter.rows;
+    add_channels(image, {"R", "G", "B"}, std::span<const float>(&means[0].x, 3 * pixels), 3);
+    add_channels(image, {"error.R", "error.G", "error.B"}, std::span<const float>(&errors[0].x, 3 * pixels), 3);
+    image.attributes["pixelUnit"] = readings.meter.unit;
+    return image;
+}
+
+}  // namespace etendue

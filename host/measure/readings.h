@@ -1,0 +1,57 @@
+// What a meter reads, over independent replicates of a render.
+//
+// The passes of a measurement are shared out to `replicates` renders that differ in their seeds alone: pass p is
+// pass p / replicates of replicate p % replicates. Within a replicate samples are stratified over its passes,
+// and so the spread of its passes says little; but replicates are independent, and the spread of their means
+// tells the error of whatever is computed from them, without any assumption on how samples are made (randomized
+// quasi-Monte Carlo; Owen 2013, "Monte Carlo theory, methods and examples", section 17.3).
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/image/image.h"
+#include "host/render/renderer.h"
+
+namespace etendue {
+
+constexpr uint32_t replicates = 16;
+
+// Of a pixel's middle. Twin of the struct in shaders/kernels/measure_receivers.comp.
+struct PixelPlace {
+    glm::vec3 position;   // m, in the coordinates of the scene file
+    glm::vec3 direction;  // unit, that light comes along at the middle; of an illuminance the meter's normal
+    float extent;         // what the pixel stands for: m² of a meter in a plane, sr of one far away
+};
+
+struct Meter {
+    std::string name, unit;       // "lx", "cd", "cd/m²"
+    uint32_t columns = 0, rows = 0;
+    bool is_far = false;          // its pixels are directions, by C and gamma (shaders/receivers/intensity.glsl)
+    bool has_extent = false;      // values times extents make a flux, lm
+    std::vector<PixelPlace> places;
+    size_t pixels() const { return size_t(columns) * rows; }
+};
+Meter describe_meter(Device& device, Scene& scene, const Receiver& receiver);
+
+// Of the pixels of an intensity meter, degrees.
+double c_angle(const Meter& meter, uint32_t column);
+double gamma_angle(const Meter& meter, uint32_t row);
+
+struct Readings {
+    Meter meter;
+    std::vector<ExactSum> sums;  // pixel after pixel, replicate after replicate
+    uint64_t passes = 0;         // of each replicate
+    RenderCounters counters;
+    AlgorithmChoice choice;
+};
+
+using PixelMeans = std::vector<glm::dvec3>;  // linear Rec.709; (1, 1, 1) is one of the meter's units
+PixelMeans replicate_means(const Readings& readings, uint32_t replicate);
+
+// The mean over all replicates as R, G, B, and its standard error as error.R, error.G, error.B.
+Image to_image(const Readings& readings);
+
+}  // namespace etendue

@@ -1,0 +1,126 @@
+#include "host/measure/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/error.h"
+#include "host/gnuplot.h"
+#include "host/image/atomic_file.h"
+#include "host/image/exr.h"
+#include "host/spectra/color.h"
+
+namespace etendue {
+namespace {
+
+namespace fs = std::filesystem;
+
+// As many digits as the interval leaves, and one more.
+std::string shown(double x, double half) {
+    if (!std::isfinite(x)) return "–";
+    if (!(half > 0) || !std::isfinite(half)) return fmt::format("{:.6g}", x);
+    const int digits = int(std::ceil(std::log10(std::max(std::abs(x), half) / half))) + 2;
+    return fmt::format("{:.{}g}", x, std::clamp(digits, 2, 9));
+}
+
+std::string pixel_table(const Readings& readings, const Image& image) {
+    const Meter& meter = readings.meter;
+    std::string text = meter.is_far ? "C_deg,gamma_deg,solid_angle_sr" : "column,row,x_m,y_m,z_m,area_m2";
+    text += fmt::format(",value_{0},standard_error_{0}\n", meter.unit == "cd/m²" ? "cd_m2" : meter.unit);
+    const auto at = [&](const char* channel, size_t i) {
+        return double(plane(image, size_t(find_channel(image, channel)))[i]);
+    };
+    for (size_t i = 0; i < meter.pixels(); ++i) {
+        const uint32_t column = uint32_t(i % meter.columns), row = uint32_t(i / meter.columns);
+        const PixelPlace& place = meter.places[i];
+        if (meter.is_far)
+            text += fmt::format("{:.6g},{:.6g},{:.6g}", c_angle(meter, column), gamma_angle(meter, row), place.extent);
+        else
+            text += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{}", column, row, place.position.x, place.position.y,
+                                place.position.z, meter.has_extent ? fmt::format("{:.6g}", place.extent) : "");
+        // The channels' errors are taken as if they had one cause: at most as large, and in white light equal.
+        text += fmt::format(",{:.7g},{:.3g}\n", luminance({at("R", i), at("G", i), at("B", i)}),
+                            luminance({at("error.R", i), at("error.G", i), at("error.B", i)}));
+    }
+    return text;
+}
+
+Table all_figures(const Measurement& measurement, const std::vector<MeterPoint>& points) {
+    Table table = {{"meter", "figure", "unit", "value", "low_95", "high_95", "where"}};
+    for (const Readings& readings : measurement.meters) {
+        for (const Figure& f : figures_of(readings, points))
+            table.push_back({readings.meter.name, f.name, f.unit, fmt::format("{:.8g}", f.interval.value),
+                             fmt::format("{:.8g}", f.interval.low), fmt::format("{:.8g}", f.interval.high), f.where});
+        if (const auto missed = missed_flux(readings, measurement.power))
+            table.push_back({readings.meter.name, "flux, upper bound", "lm", "0", "0", fmt::format("{:.8g}", *missed),
+                             "no light has arrived"});
+    }
+    return table;
+}
+
+}  // namespace
+
+void prepare_report(const fs::path& folder) {
+    std::error_code error;
+    if (fs::exists(folder) && !fs::is_directory(folder)) fail_input("--output {}: is no folder", folder.string());
+    if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / "figures.csv"))
+        fail_input("--output {}: holds other files; name a new or an empty folder, or that of an earlier measurement",
+                   folder.string());
+    fs::create_directories(folder, error);
+    if (error) fail_input("--output {}: cannot be made: {}", folder.string(), error.message());
+    check_writable(folder / "figures.csv");
+}
+
+Table figure_table(const Readings&, const std::vector<Figure>& figures) {
+    Table table = {{"figure", "value", "± 95 %", "unit", "where"}};
+    for (const Figure& f : figures) {
+        const double half = 0.5 * (f.interval.high - f.interval.low);
+        table.push_back({f.name, shown(f.interval.value, half), std::isfinite(half) ? fmt::format("{:.2g}", half) : "–",
+                         f.unit, f.where});
+    }
+    return table;
+}
+
+std::vector<std::string> file_names(const Measurement& measurement) {
+    std::vector<std::string> names;
+    for (const Readings& readings : measurement.meters) {
+        std::string name = readings.meter.name;
+        for (char& c : name)
+            if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
+        if (name.empty()) name = "meter";
+        std::string unique = name;
+        for (int i = 2; std::find(names.begin(), names.end(), unique) != names.end(); ++i)
+            unique = fmt::format("{}-{}", name, i);
+        names.push_back(unique);
+    }
+    return names;
+}
+
+std::vector<std::string> write_report(const ReportOptions& options, const Measurement& measurement,
+                                      Outputs& outputs) {
+    std::vector<std::string> notes;
+    const std::vector<std::string> names = file_names(measurement);
+    outputs.write([&] {
+        write_atomically(options.folder / "figures.csv", as_csv(all_figures(measurement, options.points)));
+    });
+    std::string script;
+    for (size_t m = 0; m < names.size(); ++m) {
+        const Readings& readings = measurement.meters[m];
+        const fs::path stem = options.folder / names[m];
+        Image image = to_image(readings);
+        image.attributes.insert(options.attributes.begin(), options.attributes.end());
+        image.attributes["rays"] = double(all_rays(readings.counters));
+        image.attributes["algorithm"] = std::string(algorithm_name(readings.choice.algorithm));
+        outputs.write([&] { write_exr(stem.string() + ".exr", image); });
+        outputs.write([&] { write_atomically(stem.string() + ".csv", pixel_table(readings, image)); });
+        for (const char* plot : {".map.png", ".sections.svg", ".polar.svg"}) fs::remove(stem.string() + plot);
+        if (!is_dark(readings)) script += plots_of(readings, stem);
+    }
+    if (!script.empty())
+        if (const std::string failure = run_gnuplot(script); !failure.empty()) notes.push_back(failure);
+    outputs.write([&] { write_atomically(options.folder / "index.html", page_of(options, measurement)); });
+    return notes;
+}
+
+}  // namespace etendue

@@ -1,0 +1,43 @@
+// The report of a measurement: a folder with
+//   index.html               a page of its own: figures, maps, sections, polar diagrams, the balance of power
+//   figures.csv              every figure of every meter, with its interval
+//   METER.exr, METER.csv     each pixel and its standard error
+//   METER.map.png            in false colours with isolines
+//   METER.sections.svg       through the middle, with the 95 % interval; of intensities METER.polar.svg
+#pragma once
+#include <filesystem>
+#include <map>
+
+#include "host/image/outputs.h"
+#include "host/measure/figures.h"
+#include "host/measure/measurement.h"
+#include "host/table.h"
+
+namespace etendue {
+
+struct ReportOptions {
+    std::filesystem::path folder;
+    std::vector<MeterPoint> points;                // for uniformity; empty = none
+    std::map<std::string, Attribute> attributes;  // of the images, and named on the page: scene, command, seed …
+};
+
+// A new or an empty folder, or one of an earlier measurement, whose files give way.
+void prepare_report(const std::filesystem::path& folder);
+
+// What each meter has read, for a terminal; the page has the same tables.
+Table figure_table(const Readings& readings, const std::vector<Figure>& figures);
+
+// Returns lines for the user: what could not be drawn.
+std::vector<std::string> write_report(const ReportOptions& options, const Measurement& measurement,
+                                      Outputs& outputs);
+
+// Names of the meters in files, each once.
+std::vector<std::string> file_names(const Measurement& measurement);
+
+// What gnuplot is to draw of a meter; the files' names begin with `stem`.
+std::string plots_of(const Readings& readings, const std::filesystem::path& stem);
+
+// The page; it holds the plots that are in the folder.
+std::string page_of(const ReportOptions& options, const Measurement& measurement);
+
+}  // namespace etendue
