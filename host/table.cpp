@@ -48,7 +48,8 @@ std::string as_csv(const Table& table) {
         for (size_t c = 0; c < row.size(); ++c) {
             std::string cell = row[c];
             if (cell.find_first_of(",\"\r\n") != std::string::npos) {
-                for (size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2) cell.insert(at, 1, '"');
+                for (size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2)
+                    cell.insert(at, 1, '"');
                 cell = '"' + cell + '"';
             }
             text += (c ? "," : "") + cell;

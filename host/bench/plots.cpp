@@ -31,7 +31,8 @@ std::string plot(const std::filesystem::path& file, const std::string& title, co
         lines += fmt::format(
             "{}$curve{} with linespoints linewidth 2 pointtype 7 pointsize 0.5 linecolor "
             "rgb '{}' title {}",
-            lines.empty() ? "" : ", ", i, colors[i % std::size(colors)], quoted_for_gnuplot(curves[i].algorithm));
+            lines.empty() ? "" : ", ", i, colors[i % std::size(colors)],
+            quoted_for_gnuplot(curves[i].algorithm));
     }
     if (lines.empty()) return "";
     if (reference_relmse > 0)

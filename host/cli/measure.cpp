@@ -27,10 +27,12 @@ std::vector<MeterPoint> parse_points(const std::string& text) {
         MeterPoint point;
         char comma = 0;
         const bool is_pair = bool(stream >> point.x >> comma >> point.y) && comma == ',' &&
-                             (stream >> std::ws).eof() && point.x >= 0 && point.x <= 1 && point.y >= 0 && point.y <= 1;
+                             (stream >> std::ws).eof() && point.x >= 0 && point.x <= 1 && point.y >= 0 &&
+                             point.y <= 1;
         if (!is_pair)
-            fail_input("--points {}: 5, 9, 13, or X,Y;X,Y… in parts of width and height from the upper left, 0 to 1",
-                       text);
+            fail_input(
+                "--points {}: 5, 9, 13, or X,Y;X,Y… in parts of width and height from the upper left, 0 to 1",
+                text);
         points.push_back(point);
     }
     if (points.size() < 2) fail_input("--points {}: at least two", text);
@@ -40,17 +42,17 @@ std::vector<MeterPoint> parse_points(const std::string& text) {
 }  // namespace
 
 CLI::App* add_measure(CLI::App& app, MeasureOptions& options, MeasureArguments& arguments) {
-    CLI::App* measure =
-        app.add_subcommand("measure", "What the meters of a scene read: a report with figures and their errors");
+    CLI::App* measure = app.add_subcommand(
+        "measure", "What the meters of a scene read: a report with figures and their errors");
     measure->add_option("SCENE", options.scene, "Scene, .gltf or .glb")->required()->option_text(" ");
     measure
         ->add_option("-o,--output", options.output,
                      "Folder for index.html, figures.csv, and images and tables of each meter")
         ->option_text("DIR");
-    auto* passes = measure->add_option(
-        "--passes", arguments.passes,
-        "Stop after N passes: paths a pixel, in whole sixteens (default: 256); A:B makes passes A to B - 1 of a "
-        "run, for merge");
+    auto* passes = measure->add_option("--passes", arguments.passes,
+                                       "Stop after N passes: paths a pixel, in whole sixteens (default: "
+                                       "256); A:B makes passes A to B - 1 of a "
+                                       "run, for merge");
     auto* seconds = measure->add_option("--time", arguments.seconds, "Stop after that many seconds");
     auto* error = measure->add_option(
         "--error", arguments.error,
@@ -75,7 +77,8 @@ CLI::App* add_measure(CLI::App& app, MeasureOptions& options, MeasureArguments& 
         ->option_text("X");
     add_shared(*measure, options, arguments.shared,
                {{"vertex-memory"}, {"color"}, {"polarization"}, {"sampler"}, {"seed"}, {"device"}});
-    measure->add_option("--checkpoint", options.checkpoint, "Keep the readings there, to go on from or to merge")
+    measure
+        ->add_option("--checkpoint", options.checkpoint, "Keep the readings there, to go on from or to merge")
         ->option_text("FILE");
     measure->add_option("--resume", options.resume, "Go on from a checkpoint of the same scene and settings")
         ->option_text("FILE");

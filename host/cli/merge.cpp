@@ -9,11 +9,12 @@ namespace etendue {
 
 CLI::App* add_merge(CLI::App& app, MergeOptions& options, std::optional<std::string>& passes) {
     CLI::App* merge = app.add_subcommand(
-        "merge", "Merge parts of one render, which render --passes A:B --checkpoint makes");
+        "merge", "Merge parts of one render or measurement, which --passes A:B --checkpoint makes");
     merge->add_option("PART", options.parts, "Checkpoints of different passes, in any order")
         ->required()
         ->option_text("…");
-    merge->add_option("-o,--output", options.output, "Image to write")->option_text("OUT.exr");
+    merge->add_option("-o,--output", options.output, "Image to write; of a measurement, the folder")
+        ->option_text("OUT.exr|DIR");
     merge
         ->add_option("--checkpoint", options.checkpoint,
                      "Write all passes there: a part to merge with others, or to render --resume from")
@@ -41,9 +42,6 @@ void finish_merge(MergeOptions& options, const std::optional<std::string>& passe
     }
     if (options.output.empty() && options.checkpoint.empty())
         fail_input("merge: --output or --checkpoint says where to (see etendue merge --help)");
-    if (!options.output.empty() && options.output.extension() != ".exr")
-        fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
-                   options.output.string());
     options.command_line = std::move(command_line);
 }
 

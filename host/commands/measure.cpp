@@ -32,26 +32,18 @@ std::vector<const Receiver*> choose_meters(const Scene& scene, const MeasureOpti
         if (options.receivers.empty()) meters.push_back(&receiver);
     }
     if (names.empty())
-        fail_input("{}: has no receiver that measures (illuminance, intensity, luminance_meter): see etendue render",
-                   options.scene.string());
+        fail_input(
+            "{}: has no receiver that measures (illuminance, intensity, luminance_meter): see etendue render",
+            options.scene.string());
     for (const std::string& name : options.receivers) {
-        const auto found = std::find_if(scene.receivers.begin(), scene.receivers.end(), [&](const Receiver& r) {
-            return r.name == name && !r.info->pixel_unit.empty();
-        });
+        const auto found =
+            std::find_if(scene.receivers.begin(), scene.receivers.end(),
+                         [&](const Receiver& r) { return r.name == name && !r.info->pixel_unit.empty(); });
         if (found == scene.receivers.end())
             fail_input("--receivers {}: there is no meter of that name; allowed: {}", name, names);
         meters.push_back(&*found);
     }
     return meters;
-}
-
-// The worst of all meters, of those that light has reached.
-double relative_error(const Measurement& measurement, bool worst) {
-    double error = 0;
-    for (const Readings& readings : measurement.meters)
-        if (!is_dark(readings))
-            error = std::max(error, worst ? relative_error_of_worst(readings) : relative_error_of_mean(readings));
-    return error;
 }
 
 }  // namespace
@@ -75,9 +67,7 @@ int measure_command(const MeasureOptions& options) {
     settings.seed = uint32_t(options.seed);
     MeasurementRun run(*opened.device, scene, choose_meters(scene, options), settings);
     Measurement& measurement = run.measurement();
-    const bool keeps = !options.checkpoint.empty() || !options.resume.empty();
-    const nlohmann::json identity =
-        keeps ? measurement_identity(source_hashes(opened, options), options, scene, run) : nlohmann::json();
+    const nlohmann::json identity = measurement_identity(source_hashes(opened, options), options, scene, run);
     std::vector<std::string> devices = {device_text(*opened.device)};
     if (!options.resume.empty()) {
         Checkpoint earlier = read_checkpoint(options.resume);
@@ -86,7 +76,8 @@ int measure_command(const MeasureOptions& options) {
         for (const std::string device : earlier.about.at("devices"))
             if (device != devices[0]) devices.push_back(device);
     }
-    const auto save = [&] { write_checkpoint(options.checkpoint, to_checkpoint(identity, measurement, devices, options)); };
+    const auto checkpoint = [&] { return to_checkpoint(identity, measurement, devices, options); };
+    const auto save = [&] { write_checkpoint(options.checkpoint, checkpoint()); };
 
     RenderStatus status;
     status.seconds_goal = options.seconds, status.error_goal = options.error;
@@ -94,7 +85,8 @@ int measure_command(const MeasureOptions& options) {
     const auto left = [&] {
         uint64_t count = 0;
         if (options.passes)
-            for (const PassRange& range : measurement.passes.missing(options.first_pass, end)) count += range.count();
+            for (const PassRange& range : measurement.passes.missing(options.first_pass, end))
+                count += range.count();
         return count;
     };
     status.passes_before = measurement.passes.count();
@@ -136,16 +128,7 @@ int measure_command(const MeasureOptions& options) {
 
     Outputs outputs;
     if (!options.output.empty() && measurement.passes.count() > 0) {
-        const ReportOptions report{options.output,
-                                   options.points,
-                                   {{"scene", options.scene.string()},
-                                    {"command", options.command_line},
-                                    {"seed", double(options.seed)},
-                                    {"passes", double(measurement.passes.count())},
-                                    {"seconds", measurement.seconds},
-                                    {"device", opened.device->description.name},
-                                    {"driver", opened.device->description.driver},
-                                    {"version", std::string(ETENDUE_VERSION)}}};
+        const ReportOptions report = report_options(checkpoint(), options.output, options.command_line);
         for (const std::string& note : write_report(report, measurement, outputs)) show_note(progress, note);
         if (!options.quiet)
             for (const Readings& readings : measurement.meters)

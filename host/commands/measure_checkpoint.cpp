@@ -1,6 +1,7 @@
 #include "host/commands/measure_checkpoint.h"
 
 #include <cstring>
+#include <set>
 
 #include "host/error.h"
 
@@ -24,6 +25,29 @@ void add_array(Checkpoint& checkpoint, const std::string& name, const std::vecto
 
 std::string array_name(size_t meter, const char* what) { return fmt::format("{} of meter {}", what, meter); }
 
+// What changes with the passes.
+void keep(const Measurement& measurement, Checkpoint& checkpoint) {
+    nlohmann::json meters = nlohmann::json::array();
+    checkpoint.arrays.clear();
+    for (size_t m = 0; m < measurement.meters.size(); ++m) {
+        const Readings& readings = measurement.meters[m];
+        meters.push_back({{"name", readings.meter.name},
+                          {"unit", readings.meter.unit},
+                          {"columns", readings.meter.columns},
+                          {"rows", readings.meter.rows},
+                          {"is_far", readings.meter.is_far},
+                          {"has_extent", readings.meter.has_extent},
+                          {"counters", to_json(readings.counters)},
+                          {"choice", to_json(readings.choice)}});
+        add_array(checkpoint, array_name(m, "sums"), readings.sums);
+        add_array(checkpoint, array_name(m, "places"), readings.meter.places);
+    }
+    checkpoint.passes = measurement.passes;
+    checkpoint.about["meters"] = meters;
+    checkpoint.about["seconds"] = measurement.seconds;
+    checkpoint.about["power"] = measurement.power;
+}
+
 }  // namespace
 
 nlohmann::json measurement_identity(const nlohmann::json& sources, const MeasureOptions& options,
@@ -31,10 +55,11 @@ nlohmann::json measurement_identity(const nlohmann::json& sources, const Measure
     nlohmann::json meters = nlohmann::json::array();
     for (const Readings& readings : run.measurement().meters) {
         const AlgorithmChoice& choice = readings.choice;
-        meters.push_back({{"name", readings.meter.name},
-                          {"size", fmt::format("{}x{}", readings.meter.columns, readings.meter.rows)},
-                          {"algorithm", algorithm_name(choice.algorithm)},
-                          {"forward-paths", choice.algorithm == Algorithm::backward ? 0.0 : choice.forward_paths}});
+        meters.push_back(
+            {{"name", readings.meter.name},
+             {"size", fmt::format("{}x{}", readings.meter.columns, readings.meter.rows)},
+             {"algorithm", algorithm_name(choice.algorithm)},
+             {"forward-paths", choice.algorithm == Algorithm::backward ? 0.0 : choice.forward_paths}});
     }
     nlohmann::json identity = sources;
     identity.update({{"meters", meters},
@@ -53,28 +78,10 @@ Checkpoint to_checkpoint(const nlohmann::json& identity, const Measurement& meas
                          const std::vector<std::string>& devices, const MeasureOptions& options) {
     Checkpoint checkpoint;
     checkpoint.identity = identity;
-    checkpoint.passes = measurement.passes;
-    nlohmann::json meters = nlohmann::json::array(), points = nlohmann::json::array();
-    for (size_t m = 0; m < measurement.meters.size(); ++m) {
-        const Readings& readings = measurement.meters[m];
-        meters.push_back({{"name", readings.meter.name},
-                          {"unit", readings.meter.unit},
-                          {"columns", readings.meter.columns},
-                          {"rows", readings.meter.rows},
-                          {"is_far", readings.meter.is_far},
-                          {"has_extent", readings.meter.has_extent},
-                          {"counters", to_json(readings.counters)},
-                          {"choice", to_json(readings.choice)}});
-        add_array(checkpoint, array_name(m, "sums"), readings.sums);
-        add_array(checkpoint, array_name(m, "places"), readings.meter.places);
-    }
-    for (const glm::dvec2& point : options.points) points.push_back({point.x, point.y});
-    checkpoint.about = {{"meters", meters},
-                        {"points", points},
-                        {"seconds", measurement.seconds},
-                        {"power", measurement.power},
-                        {"scene", options.scene.string()},
-                        {"devices", devices}};
+    checkpoint.about = {
+        {"scene", options.scene.string()}, {"points", nlohmann::json::array()}, {"devices", devices}};
+    for (const glm::dvec2& point : options.points) checkpoint.about["points"].push_back({point.x, point.y});
+    keep(measurement, checkpoint);
     return checkpoint;
 }
 
@@ -91,7 +98,8 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
         meter.columns = json.at("columns"), meter.rows = json.at("rows");
         meter.is_far = json.at("is_far"), meter.has_extent = json.at("has_extent");
         meter.places = array_of<PixelPlace>(checkpoint, path, array_name(m, "places"), meter.pixels());
-        readings.sums = array_of<ExactSum>(checkpoint, path, array_name(m, "sums"), meter.pixels() * replicates);
+        readings.sums =
+            array_of<ExactSum>(checkpoint, path, array_name(m, "sums"), meter.pixels() * replicates);
         readings.counters = counters_from_json(json.at("counters"));
         readings.choice = choice_from_json(json.at("choice"));
         readings.passes = checkpoint.passes.count() / replicates;
@@ -108,6 +116,33 @@ void add(Measurement& all, const Measurement& part) {
         add(readings.counters, part.meters[m].counters);
         readings.passes = all.passes.count() / replicates;
     }
+}
+
+void merge_measurement(Checkpoint& all, Checkpoint& part, const std::filesystem::path& path) {
+    Measurement sum = measurement_of(all, path);
+    add(sum, measurement_of(part, path));
+    keep(sum, all);
+    std::set<std::string> devices = all.about.at("devices");
+    devices.merge(part.about.at("devices").get<std::set<std::string>>());
+    all.about["devices"] = devices;
+}
+
+ReportOptions report_options(const Checkpoint& checkpoint, const std::filesystem::path& folder,
+                             const std::string& command_line) {
+    ReportOptions options{folder, {}, {}};
+    for (const nlohmann::json& point : checkpoint.about.at("points"))
+        options.points.push_back({point.at(0), point.at(1)});
+    std::string devices;
+    for (const std::string device : checkpoint.about.at("devices"))
+        devices += (devices.empty() ? "" : "; ") + device;
+    options.attributes = {{"scene", checkpoint.about.at("scene").get<std::string>()},
+                          {"command", command_line},
+                          {"seed", checkpoint.identity.at("seed").get<double>()},
+                          {"passes", double(checkpoint.passes.count())},
+                          {"seconds", checkpoint.about.at("seconds").get<double>()},
+                          {"device", devices},
+                          {"version", std::string(ETENDUE_VERSION)}};
+    return options;
 }
 
 }  // namespace etendue

@@ -1,11 +1,14 @@
-// etendue merge: parts of one render, made by several runs, to one image and one checkpoint.
+// etendue merge: parts of one render or measurement, made by several runs, to one image or report and one
+// checkpoint.
 #include <cmath>
 
 #include "host/commands/film_checkpoint.h"
+#include "host/commands/measure_checkpoint.h"
 #include "host/error.h"
 #include "host/image/atomic_file.h"
 #include "host/image/exr.h"
 #include "host/image/outputs.h"
+#include "host/measure/report.h"
 
 namespace etendue {
 namespace {
@@ -30,7 +33,10 @@ class Merger {
         }
         const fs::path& first = added_.front().first;
         require_identity(path, part->identity, all_->identity, fmt::format("in {}", first.string()));
-        merge(*all_, *part, path);
+        if (is_measurement(*part))
+            merge_measurement(*all_, *part, path);
+        else
+            merge(*all_, *part, path);
     }
 
     // All that were added. Fails where passes that are wanted are missing, unless they may be.
@@ -73,7 +79,11 @@ std::string text_of(const RelativeError& error) {
                : std::string("no error can be told yet");
 }
 
-void write_stats(const MergeOptions& options, const Checkpoint& all, const RelativeError& error) {
+struct StatedError {
+    double value, bound;
+};
+
+void write_stats(const MergeOptions& options, const Checkpoint& all, const StatedError& error) {
     const auto finite_or_null = [](double x) {
         return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json();
     };
@@ -82,33 +92,59 @@ void write_stats(const MergeOptions& options, const Checkpoint& all, const Relat
     json.update({{"command", options.command_line},
                  {"passes", to_json(all.passes)},
                  {"pass_count", all.passes.count()},
-                 {"estimated_relative_error", finite_or_null(error.value())},
-                 {"relative_error_bound", finite_or_null(error.bound())}});
+                 {"estimated_relative_error", finite_or_null(error.value)},
+                 {"relative_error_bound", finite_or_null(error.bound)}});
     const std::string text = json.dump(2) + "\n";
     write_atomically(options.stats, text);
+}
+
+void write_image(const MergeOptions& options, Checkpoint& all, const fs::path& first, Outputs& outputs,
+                 std::string& told) {
+    if (options.output.extension() != ".exr" && !options.output.empty())
+        fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
+                   options.output.string());
+    if (options.output.empty() && options.stats.empty()) return;
+    Developed developed = develop(all, first, options.aovs);
+    told += ": " + text_of(developed.error);
+    if (!options.output.empty()) {
+        developed.image.attributes.merge(image_attributes(all));
+        developed.image.attributes["command"] = options.command_line;
+        outputs.write([&] { write_exr(options.output, developed.image); });
+    }
+    if (!options.stats.empty())
+        outputs.write([&] { write_stats(options, all, {developed.error.value(), developed.error.bound()}); });
+}
+
+void write_measurement(const MergeOptions& options, Checkpoint& all, const fs::path& first, Outputs& outputs,
+                       std::string& told) {
+    if (options.aovs) fail_input("--aovs: {} is a measurement, which has no such layers", first.string());
+    const Measurement measurement = measurement_of(all, first);
+    const double error = relative_error(measurement, false);
+    told += fmt::format(": half the 95 % intervals of the means is at most {:.4g} of them", error);
+    if (!options.stats.empty()) outputs.write([&] { write_stats(options, all, {error, error}); });
+    if (options.output.empty()) return;
+    prepare_report(options.output);
+    for (const std::string& note :
+         write_report(report_options(all, options.output, options.command_line), measurement, outputs))
+        if (!options.quiet) fmt::print(stderr, "{}\n", note);
 }
 
 }  // namespace
 
 int merge_command(const MergeOptions& options) {
-    for (const fs::path& path : {options.output, options.checkpoint, options.stats})
+    for (const fs::path& path : {options.checkpoint, options.stats})
         if (!path.empty()) check_writable(path);
     Merger merger(options);
     for (const fs::path& part : options.parts) merger.add(part);
     Checkpoint& all = merger.all();
+    if (!options.output.empty() && !is_measurement(all)) check_writable(options.output);
     Outputs outputs;
     std::string told =
         fmt::format("passes {} of {} parts", to_text(all.passes.ranges()), options.parts.size());
-    if (!options.output.empty() || !options.stats.empty()) {
-        Developed developed = develop(all, merger.first(), options.aovs);
-        told += ": " + text_of(developed.error);
-        if (!options.output.empty()) {
-            developed.image.attributes.merge(image_attributes(all));
-            developed.image.attributes["command"] = options.command_line;
-            outputs.write([&] { write_exr(options.output, developed.image); });
-        }
-        if (!options.stats.empty()) outputs.write([&] { write_stats(options, all, developed.error); });
-    }
+    if (is_measurement(all))
+        write_measurement(options, all, merger.first(), outputs, told);
+    else
+        write_image(options, all, merger.first(), outputs, told);
     if (!options.checkpoint.empty()) outputs.write([&] { write_checkpoint(options.checkpoint, all); });
     outputs.finish();
     if (!options.quiet) fmt::print("{}\n", told);

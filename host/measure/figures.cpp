@@ -107,8 +107,8 @@ void add_points(std::vector<Figure>& figures, const Meter& meter,
     for (size_t i = 0; i < points.size(); ++i) {
         Series series;
         for (const auto& row : at_points) series.push_back(row[i]);
-        figures.push_back({fmt::format("point {} ({:.4g}, {:.4g})", i + 1, points[i].x, points[i].y), meter.unit,
-                           mean_interval(series), ""});
+        figures.push_back({fmt::format("point {} ({:.4g}, {:.4g})", i + 1, points[i].x, points[i].y),
+                           meter.unit, mean_interval(series), ""});
     }
     figures.push_back({fmt::format("min / max of {} points", points.size()), "",
                        function_interval({least, greatest}, ratio), ""});
@@ -126,12 +126,11 @@ void add_colors(std::vector<Figure>& figures, const Readings& readings, const st
         for (int c = 0; c < 3; ++c) xyz[size_t(c)].push_back(sum[c]);
     }
     const auto add = [&](const char* name, const char* unit, auto f) {
-        figures.push_back({name, unit,
-                           function_interval(xyz,
-                                             [&](const std::vector<double>& m) {
-                                                 return f(glm::dvec3(m[0], m[1], m[2]));
-                                             }),
-                           ""});
+        figures.push_back(
+            {name, unit,
+             function_interval(xyz,
+                               [&](const std::vector<double>& m) { return f(glm::dvec3(m[0], m[1], m[2])); }),
+             ""});
     };
     add("x", "", [](const glm::dvec3& c) { return chromaticity_xy(c).x; });
     add("y", "", [](const glm::dvec3& c) { return chromaticity_xy(c).y; });
@@ -210,8 +209,10 @@ std::vector<Figure> figures_of(const Readings& readings, const std::vector<Meter
     }
     figures.push_back({"mean", meter.unit, mean_interval(mean), ""});
     if (meter.pixels() > 1) {
-        figures.push_back({"minimum", meter.unit, mean_interval(least), place_text(meter, extreme_pixel(values, -1))});
-        figures.push_back({"maximum", meter.unit, mean_interval(greatest), place_text(meter, extreme_pixel(values, 1))});
+        figures.push_back(
+            {"minimum", meter.unit, mean_interval(least), place_text(meter, extreme_pixel(values, -1))});
+        figures.push_back(
+            {"maximum", meter.unit, mean_interval(greatest), place_text(meter, extreme_pixel(values, 1))});
     }
     if (is_dark(readings)) return figures;
     if (meter.pixels() > 1 && !meter.is_far) {

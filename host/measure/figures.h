@@ -1,10 +1,10 @@
 // The figures that are told of a meter, each with an interval that holds the truth with 95 % confidence.
 //
 // A figure is a function of means over pixels, each known from every replicate of the render
-// (host/measure/readings.h): a mean's interval is Student's; that of a ratio or of a colour is the jackknife's,
-// which leaves each replicate out in turn (Efron & Stein 1981, "The Jackknife Estimate of Variance"). The least
-// of many noisy pixels is too low; so each replicate is read where the others have their least, and likewise the
-// greatest.
+// (host/measure/readings.h): a mean's interval is Student's; that of a ratio or of a colour is the
+// jackknife's, which leaves each replicate out in turn (Efron & Stein 1981, "The Jackknife Estimate of
+// Variance"). The least of many noisy pixels is too low; so each replicate is read where the others have
+// their least, and likewise the greatest.
 #pragma once
 #include <functional>
 #include <optional>
@@ -37,8 +37,8 @@ struct Figure {
 
 // A point of a meter, in parts of its width and height from the upper left corner.
 using MeterPoint = glm::dvec2;
-// 5, 9 or 13 points as displays are judged by (IEC 62977 and makers' data sheets): 9 at 1/6, 1/2 and 5/6 of each
-// side; 5: their corners and middle; 13: the 9, and four at 1/10 and 9/10.
+// 5, 9 or 13 points as displays are judged by (IEC 62977 and makers' data sheets): 9 at 1/6, 1/2 and 5/6 of
+// each side; 5: their corners and middle; 13: the 9, and four at 1/10 and 9/10.
 std::vector<MeterPoint> standard_points(uint32_t count);
 
 // `points`: for uniformity; empty = none.

@@ -15,8 +15,8 @@ struct Measurement {
     double power = 0;    // of the scene's lights, lm
 };
 
-// What `auto` comes to for a meter: backward rays where they find all light, else both ways; no pilot is run, so
-// that every machine chooses the same.
+// What `auto` comes to for a meter: backward rays where they find all light, else both ways; no pilot is run,
+// so that every machine chooses the same.
 AlgorithmChoice choose_for_meter(Device& device, Scene& scene, const Receiver& receiver);
 
 // Adds passes to a measurement.
@@ -27,8 +27,8 @@ class MeasurementRun {
                    const RenderSettings& settings);
     ~MeasurementRun();
 
-    // Passes [range.first, range.end), whole sixteens, of all meters. False: `interrupt` ended it, and nothing
-    // was added.
+    // Passes [range.first, range.end), whole sixteens, of all meters. False: `interrupt` ended it, and
+    // nothing was added.
     bool add(const PassRange& range, const std::function<bool()>& interrupt);
 
     const Measurement& measurement() const { return measurement_; }

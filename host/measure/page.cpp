@@ -46,8 +46,8 @@ std::string ledger(const Measurement& measurement) {
            "<p>Meters take no light: what they read passes on and ends in one of these lines.</p>\n";
 }
 
-std::string meter_section(const ReportOptions& options, const Measurement& measurement, const Readings& readings,
-                          const std::string& name) {
+std::string meter_section(const ReportOptions& options, const Measurement& measurement,
+                          const Readings& readings, const std::string& name) {
     const Meter& meter = readings.meter;
     std::string html = fmt::format(
         "<h2>{}</h2>\n<p>{} × {} pixels, {}; {}: {}.</p>\n", escaped(meter.name), meter.columns, meter.rows,
@@ -55,14 +55,16 @@ std::string meter_section(const ReportOptions& options, const Measurement& measu
     html += as_html(figure_table(readings, figures_of(readings, options.points)));
     if (is_dark(readings)) {
         const auto missed = missed_flux(readings, measurement.power);
-        html += fmt::format("<p class=\"note\">No light has arrived{}.</p>\n",
-                            missed ? fmt::format(": with 95 % confidence its flux is below {:.3g} lm", *missed)
-                                   : std::string(" by backward rays; how much they may have missed they do not tell"));
+        html += fmt::format(
+            "<p class=\"note\">No light has arrived{}.</p>\n",
+            missed ? fmt::format(": with 95 % confidence its flux is below {:.3g} lm", *missed)
+                   : std::string(" by backward rays; how much they may have missed they do not tell"));
     }
     const fs::path stem = options.folder / name;
     if (const fs::path map = stem.string() + ".map.png"; fs::exists(map))
-        html += fmt::format("<figure><img alt=\"{} in false colours\" src=\"data:image/png;base64,{}\"></figure>\n",
-                            escaped(meter.name), base64(read_whole_file(map)));
+        html += fmt::format(
+            "<figure><img alt=\"{} in false colours\" src=\"data:image/png;base64,{}\"></figure>\n",
+            escaped(meter.name), base64(read_whole_file(map)));
     for (const char* plot : {".sections.svg", ".polar.svg"})
         if (const std::string svg = inline_svg(stem.string() + plot); !svg.empty())
             html += "<figure>" + svg + "</figure>\n";

@@ -13,12 +13,9 @@ std::vector<PixelPlace> pixel_places(Device& device, Scene& scene, const Receive
     const Kernel kernel =
         make_color_kernel(device, scene, "kernels/measure_receivers.comp", {{"PixelPlaces", &buffer}});
     CommandList commands(device);
-    commands.dispatch(kernel, (pixels + kernel.group_size() - 1) / kernel.group_size(),
-                      {{"first", 0u},
-                       {"last", pixels},
-                       {"columns", columns},
-                       {"rows", rows},
-                       {"receiver", receiver.ref}});
+    commands.dispatch(
+        kernel, (pixels + kernel.group_size() - 1) / kernel.group_size(),
+        {{"first", 0u}, {"last", pixels}, {"columns", columns}, {"rows", rows}, {"receiver", receiver.ref}});
     commands.run();
     return buffer.read_array<PixelPlace>(pixels);
 }
@@ -27,8 +24,13 @@ std::vector<PixelPlace> pixel_places(Device& device, Scene& scene, const Receive
 
 Meter describe_meter(Device& device, Scene& scene, const Receiver& receiver) {
     const ClassInfo& info = *receiver.info;
-    Meter meter{receiver.name, info.pixel_unit, receiver.columns, receiver.rows, info.is_far,
-                info.is_far || info.has_receptor, {}};
+    Meter meter{receiver.name,
+                info.pixel_unit,
+                receiver.columns,
+                receiver.rows,
+                info.is_far,
+                info.is_far || info.has_receptor,
+                {}};
     meter.places = pixel_places(device, scene, receiver, meter.columns, meter.rows);
     for (PixelPlace& place : meter.places) place.position += glm::vec3(scene.center);
     return meter;
@@ -40,7 +42,8 @@ double gamma_angle(const Meter& meter, uint32_t row) { return 180.0 * row / (met
 PixelMeans replicate_means(const Readings& readings, uint32_t replicate) {
     PixelMeans means(readings.meter.pixels());
     for (size_t i = 0; i < means.size(); ++i)
-        means[i] = value(readings.sums[i * replicates + replicate]) / double(std::max<uint64_t>(readings.passes, 1));
+        means[i] =
+            value(readings.sums[i * replicates + replicate]) / double(std::max<uint64_t>(readings.passes, 1));
     return means;
 }
 
@@ -61,7 +64,8 @@ Image to_image(const Readings& readings) {
     Image image;
     image.width = readings.meter.columns, image.height = readings.meter.rows;
     add_channels(image, {"R", "G", "B"}, std::span<const float>(&means[0].x, 3 * pixels), 3);
-    add_channels(image, {"error.R", "error.G", "error.B"}, std::span<const float>(&errors[0].x, 3 * pixels), 3);
+    add_channels(image, {"error.R", "error.G", "error.B"}, std::span<const float>(&errors[0].x, 3 * pixels),
+                 3);
     image.attributes["pixelUnit"] = readings.meter.unit;
     return image;
 }

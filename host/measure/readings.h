@@ -1,10 +1,10 @@
 // What a meter reads, over independent replicates of a render.
 //
-// The passes of a measurement are shared out to `replicates` renders that differ in their seeds alone: pass p is
-// pass p / replicates of replicate p % replicates. Within a replicate samples are stratified over its passes,
-// and so the spread of its passes says little; but replicates are independent, and the spread of their means
-// tells the error of whatever is computed from them, without any assumption on how samples are made (randomized
-// quasi-Monte Carlo; Owen 2013, "Monte Carlo theory, methods and examples", section 17.3).
+// The passes of a measurement are shared out to `replicates` renders that differ in their seeds alone: pass p
+// is pass p / replicates of replicate p % replicates. Within a replicate samples are stratified over its
+// passes, and so the spread of its passes says little; but replicates are independent, and the spread of
+// their means tells the error of whatever is computed from them, without any assumption on how samples are
+// made (randomized quasi-Monte Carlo; Owen 2013, "Monte Carlo theory, methods and examples", section 17.3).
 #pragma once
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -27,10 +27,10 @@ struct PixelPlace {
 };
 
 struct Meter {
-    std::string name, unit;       // "lx", "cd", "cd/m²"
+    std::string name, unit;  // "lx", "cd", "cd/m²"
     uint32_t columns = 0, rows = 0;
-    bool is_far = false;          // its pixels are directions, by C and gamma (shaders/receivers/intensity.glsl)
-    bool has_extent = false;      // values times extents make a flux, lm
+    bool is_far = false;      // its pixels are directions, by C and gamma (shaders/receivers/intensity.glsl)
+    bool has_extent = false;  // values times extents make a flux, lm
     std::vector<PixelPlace> places;
     size_t pixels() const { return size_t(columns) * rows; }
 };

@@ -35,11 +35,14 @@ std::string pixel_table(const Readings& readings, const Image& image) {
         const uint32_t column = uint32_t(i % meter.columns), row = uint32_t(i / meter.columns);
         const PixelPlace& place = meter.places[i];
         if (meter.is_far)
-            text += fmt::format("{:.6g},{:.6g},{:.6g}", c_angle(meter, column), gamma_angle(meter, row), place.extent);
+            text += fmt::format("{:.6g},{:.6g},{:.6g}", c_angle(meter, column), gamma_angle(meter, row),
+                                place.extent);
         else
-            text += fmt::format("{},{},{:.6g},{:.6g},{:.6g},{}", column, row, place.position.x, place.position.y,
-                                place.position.z, meter.has_extent ? fmt::format("{:.6g}", place.extent) : "");
-        // The channels' errors are taken as if they had one cause: at most as large, and in white light equal.
+            text +=
+                fmt::format("{},{},{:.6g},{:.6g},{:.6g},{}", column, row, place.position.x, place.position.y,
+                            place.position.z, meter.has_extent ? fmt::format("{:.6g}", place.extent) : "");
+        // The channels' errors are taken as if they had one cause: at most as large, and in white light
+        // equal.
         text += fmt::format(",{:.7g},{:.3g}\n", luminance({at("R", i), at("G", i), at("B", i)}),
                             luminance({at("error.R", i), at("error.G", i), at("error.B", i)}));
     }
@@ -51,10 +54,11 @@ Table all_figures(const Measurement& measurement, const std::vector<MeterPoint>&
     for (const Readings& readings : measurement.meters) {
         for (const Figure& f : figures_of(readings, points))
             table.push_back({readings.meter.name, f.name, f.unit, fmt::format("{:.8g}", f.interval.value),
-                             fmt::format("{:.8g}", f.interval.low), fmt::format("{:.8g}", f.interval.high), f.where});
+                             fmt::format("{:.8g}", f.interval.low), fmt::format("{:.8g}", f.interval.high),
+                             f.where});
         if (const auto missed = missed_flux(readings, measurement.power))
-            table.push_back({readings.meter.name, "flux, upper bound", "lm", "0", "0", fmt::format("{:.8g}", *missed),
-                             "no light has arrived"});
+            table.push_back({readings.meter.name, "flux, upper bound", "lm", "0", "0",
+                             fmt::format("{:.8g}", *missed), "no light has arrived"});
     }
     return table;
 }
@@ -63,10 +67,13 @@ Table all_figures(const Measurement& measurement, const std::vector<MeterPoint>&
 
 void prepare_report(const fs::path& folder) {
     std::error_code error;
-    if (fs::exists(folder) && !fs::is_directory(folder)) fail_input("--output {}: is no folder", folder.string());
+    if (fs::exists(folder) && !fs::is_directory(folder))
+        fail_input("--output {}: is no folder", folder.string());
     if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / "figures.csv"))
-        fail_input("--output {}: holds other files; name a new or an empty folder, or that of an earlier measurement",
-                   folder.string());
+        fail_input(
+            "--output {}: holds other files; name a new or an empty folder, or that of an earlier "
+            "measurement",
+            folder.string());
     fs::create_directories(folder, error);
     if (error) fail_input("--output {}: cannot be made: {}", folder.string(), error.message());
     check_writable(folder / "figures.csv");
@@ -76,10 +83,19 @@ Table figure_table(const Readings&, const std::vector<Figure>& figures) {
     Table table = {{"figure", "value", "± 95 %", "unit", "where"}};
     for (const Figure& f : figures) {
         const double half = 0.5 * (f.interval.high - f.interval.low);
-        table.push_back({f.name, shown(f.interval.value, half), std::isfinite(half) ? fmt::format("{:.2g}", half) : "–",
-                         f.unit, f.where});
+        table.push_back({f.name, shown(f.interval.value, half),
+                         std::isfinite(half) ? fmt::format("{:.2g}", half) : "–", f.unit, f.where});
     }
     return table;
+}
+
+double relative_error(const Measurement& measurement, bool worst) {
+    double error = 0;
+    for (const Readings& readings : measurement.meters)
+        if (!is_dark(readings))
+            error =
+                std::max(error, worst ? relative_error_of_worst(readings) : relative_error_of_mean(readings));
+    return error;
 }
 
 std::vector<std::string> file_names(const Measurement& measurement) {

@@ -17,8 +17,9 @@ namespace etendue {
 
 struct ReportOptions {
     std::filesystem::path folder;
-    std::vector<MeterPoint> points;                // for uniformity; empty = none
-    std::map<std::string, Attribute> attributes;  // of the images, and named on the page: scene, command, seed …
+    std::vector<MeterPoint> points;  // for uniformity; empty = none
+    std::map<std::string, Attribute>
+        attributes;  // of the images, and named on the page: scene, command, seed …
 };
 
 // A new or an empty folder, or one of an earlier measurement, whose files give way.
@@ -30,6 +31,10 @@ Table figure_table(const Readings& readings, const std::vector<Figure>& figures)
 // Returns lines for the user: what could not be drawn.
 std::vector<std::string> write_report(const ReportOptions& options, const Measurement& measurement,
                                       Outputs& outputs);
+
+// What --error asks: the worst of all meters, of those that light has reached; of their means or worst
+// pixels.
+double relative_error(const Measurement& measurement, bool worst);
 
 // Names of the meters in files, each once.
 std::vector<std::string> file_names(const Measurement& measurement);

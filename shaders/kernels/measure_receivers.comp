@@ -21,6 +21,6 @@ void main() {
     if (i >= last) return;
     vec2 film = (vec2(i % columns, i / columns) + 0.5) / vec2(columns, rows);
     CameraRay r = receiver_emit(receiver, film, vec2(0.5), float(columns) / float(rows));
-    float share = 1.0 / (r.density * float(columns) * float(rows));
+    float share = 1.0 / (r.density * (r.at_receptor ? 1.0 : r.weight) * float(columns) * float(rows));  // m² or sr
     pixel_places[i - first] = PixelPlace(r.origin, -r.direction, share);
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One render by the workers of a Dask cluster: tasks are runs of etendue on ranges of passes, done again where a worker dies.
+"""One render or measurement by the workers of a Dask cluster: tasks are runs of etendue on ranges of passes, done again where a worker dies.
 
     tools/cluster/dask_render.py SCENE.gltf -o OUT.exr --error 0.02 --cluster ssh:anna,bert -- --size 1920x1080
 
@@ -9,7 +9,7 @@ program are on a file system that all workers share; parts come back as results 
 import argparse, json, os, subprocess, sys, tempfile
 from dask.distributed import Client, LocalCluster, SSHCluster, as_completed
 
-COMMANDS = ["render"]  # `measure` is to come: it will take ranges and be merged as render does
+COMMANDS = ["render", "measure"]
 
 
 def make_cluster(kind, workers):
@@ -40,19 +40,19 @@ def run_range(program, command, scene, options, first, end, threads):
 def main():
     words = sys.argv[1:]
     split = words.index("--") if "--" in words else len(words)
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0], epilog="Behind --: options of etendue render.")
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0], epilog="Behind --: options of the command.")
     parser.add_argument("scene")
-    parser.add_argument("-o", "--output", required=True)
+    parser.add_argument("-o", "--output", required=True, help="image; of measure, a folder")
     parser.add_argument("--command", choices=COMMANDS, default="render")
     parser.add_argument("--passes", type=int, help="stop after so many")
     parser.add_argument("--error", type=float, help="stop when the error is below this with 95 %% confidence")
     parser.add_argument("--cluster", default="local", help="local, ssh:HOST,…, slurm, or tcp://SCHEDULER:8786")
     parser.add_argument("--workers", type=int, default=os.cpu_count())
-    parser.add_argument("--chunk", type=int, default=16, help="passes of a task")
+    parser.add_argument("--chunk", type=int, default=16, help="passes of a task; of measure, whole sixteens")
     parser.add_argument("--program", default="etendue")
     a, options = parser.parse_args(words[:split]), words[split + 1:]
     if (a.passes is None) == (a.error is None): parser.error("one of --passes and --error is wanted")
-    if "--algorithm" not in options:  # what auto would choose is chosen once, for all workers
+    if a.command == "render" and "--algorithm" not in options:  # what auto would choose is chosen once, for all workers
         chosen = subprocess.run([a.program, "inspect", a.scene, "--json"], check=True, capture_output=True, text=True)
         options += json.loads(chosen.stdout)["arguments"]
     scene, threads = os.path.abspath(a.scene), max(1, os.cpu_count() // a.workers) if a.cluster == "local" else None
