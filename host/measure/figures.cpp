@@ -17,14 +17,6 @@ double mean_of(const Series& series) {
     return std::accumulate(series.begin(), series.end(), 0.0) / double(series.size());
 }
 
-// Luminous values of the pixels: replicate after replicate.
-std::vector<std::vector<double>> luminous_values(const Readings& readings) {
-    std::vector<std::vector<double>> values(replicates);
-    for (uint32_t k = 0; k < replicates; ++k)
-        for (const glm::dvec3& rgb : replicate_means(readings, k)) values[k].push_back(luminance(rgb));
-    return values;
-}
-
 // A weight a pixel, of sum 1, by the extents.
 std::vector<double> weights_of(const Meter& meter) {
     std::vector<double> weights(meter.pixels(), 1.0 / double(meter.pixels()));
@@ -143,6 +135,20 @@ void add_colors(std::vector<Figure>& figures, const Readings& readings, const st
 }
 
 }  // namespace
+
+std::vector<std::vector<double>> luminous_values(const Readings& readings) {
+    const Meter& meter = readings.meter;
+    std::vector<std::vector<double>> values(replicates);
+    for (uint32_t k = 0; k < replicates; ++k) {
+        for (const glm::dvec3& rgb : replicate_means(readings, k)) values[k].push_back(luminance(rgb));
+        if (!meter.is_far) continue;
+        for (size_t first : {size_t(0), meter.pixels() - meter.columns}) {
+            const auto begin = values[k].begin() + std::ptrdiff_t(first), end = begin + meter.columns;
+            std::fill(begin, end, std::accumulate(begin, end, 0.0) / meter.columns);
+        }
+    }
+    return values;
+}
 
 double student_factor(size_t samples) {
     // Of 1 to 20 degrees of freedom; beyond, Cornish & Fisher's expansion (Abramowitz & Stegun 26.7.5).

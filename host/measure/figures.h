@@ -28,6 +28,10 @@ Interval function_interval(const std::vector<Series>& series,
 // Student's t for 95 % of two sides.
 double student_factor(size_t samples);
 
+// Luminous values of the pixels, replicate after replicate. Of a meter far away all pixels of the first and
+// the last row look the same way: each is their mean.
+std::vector<std::vector<double>> luminous_values(const Readings& readings);
+
 struct Figure {
     std::string name;  // "mean", "U0 = min / mean"
     std::string unit;  // empty = a number

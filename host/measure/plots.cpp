@@ -6,7 +6,6 @@
 
 #include "host/gnuplot.h"
 #include "host/measure/report.h"
-#include "host/spectra/color.h"
 
 namespace etendue {
 namespace {
@@ -20,11 +19,10 @@ struct Map {
 Map map_of(const Readings& readings) {
     Map map;
     const size_t pixels = readings.meter.pixels();
-    std::vector<PixelMeans> means;
-    for (uint32_t k = 0; k < replicates; ++k) means.push_back(replicate_means(readings, k));
+    const auto replicate_values = luminous_values(readings);
     for (size_t i = 0; i < pixels; ++i) {
         Series series;
-        for (const PixelMeans& m : means) series.push_back(luminance(m[i]));
+        for (const auto& values : replicate_values) series.push_back(values[i]);
         const Interval pixel = mean_interval(series);
         map.values.push_back(pixel.value), map.halves.push_back(0.5 * (pixel.high - pixel.low));
         map.greatest = std::max(map.greatest, pixel.value);
@@ -115,7 +113,8 @@ std::string draw_sections(const Meter& meter, const Map& map, const Axes& axes,
     return section_data(map, "along", row * meter.columns, 1, meter.columns, axes.x_first, axes.x_step) +
            section_data(map, "across", column, meter.columns, meter.rows, axes.y_first, axes.y_step) +
            fmt::format(
-               "{}set size noratio\nset autoscale\nset yrange [0:*]\nset xlabel '{}; {}'\nset ylabel '{}'\n"
+               "{}set size noratio\nset key bottom center\nset autoscale\nset yrange [0:*]\nset xlabel '{}; "
+               "{}'\nset ylabel '{}'\n"
                "set output {}\nset title {}\nplot {}, {}\nunset output\n",
                svg, axes.x_label, axes.y_label, meter.unit, quoted_for_gnuplot(file.string()),
                quoted_for_gnuplot(meter.name + ": sections through the middle, 95 % intervals"),
@@ -148,13 +147,15 @@ std::string draw_polar(const Meter& meter, const Map& map, const std::filesystem
         "polar\nset angles "
         "degrees\nset theta bottom counterclockwise\nset size square\nunset border\nunset xtics\nunset "
         "ytics\nunset "
-        "xlabel\nunset ylabel\nset grid polar 30\nset rrange [0:{:.6g}]\nset rtics\nset ttics "
+        "xlabel\nunset ylabel\nset grid polar 30\nset rrange [0:{:.6g}]\nset rtics\nset key outside bottom "
+        "center horizontal\nset ttics "
         "-180,30,180\nset output "
         "{}\nset title {}\nplot $c0 with lines linewidth 2 linecolor rgb '#0072b2' title '{}', $c90 with "
         "lines linewidth "
         "2 linecolor rgb '#d55e00' title '{}', $cpeak with lines dashtype 2 linecolor rgb '#009e73' title "
         "'{} (peak)'\n"
-        "unset output\nunset polar\nunset ttics\nunset rtics\nset border\nset xtics\nset ytics\nset grid "
+        "unset output\nset key default\nunset polar\nunset ttics\nunset rtics\nset border\nset xtics\nset "
+        "ytics\nset grid "
         "nopolar\n",
         1.05 * map.greatest, quoted_for_gnuplot(file.string()), quoted_for_gnuplot(meter.name + ", cd"),
         title(0), title(c90), title(c_peak));

@@ -1,0 +1,109 @@
+// etendue measure as its users run it: reports, ranges and merging, bad words.
+#include <filesystem>
+
+#include "host/image/exr.h"
+#include "tests/cli/program.h"
+
+using namespace etendue;
+
+namespace {
+
+// A point of 1000 cd 2 m above a plane of 2 x 2 m, a goniophotometer, and a meter that faces away.
+const char* scene_text = R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "scene": 0,
+    "scenes": [{"nodes": [0, 1, 2, 3]}], "nodes": [
+    {"name": "lamp", "translation": [0, 2, 0], "extensions": {"ETD_optics": {"light": {"class": "point", "intensity": 1000}}}},
+    {"name": "plane", "rotation": [-0.70710678, 0, 0, 0.70710678], "extensions": {"ETD_optics": {"receiver":
+        {"class": "illuminance", "size": [2, 2], "resolution": [8, 8]}}}},
+    {"name": "gonio", "rotation": [0.70710678, 0, 0, 0.70710678], "extensions": {"ETD_optics": {"receiver":
+        {"class": "intensity", "resolution": [8, 7]}}}},
+    {"name": "away", "translation": [0, 3, 0], "rotation": [-0.70710678, 0, 0, 0.70710678], "extensions": {"ETD_optics":
+        {"receiver": {"class": "illuminance", "size": [1, 1], "resolution": [2, 2]}}}}]})";
+
+std::string text_of(const Executable& program, const std::string& file) {
+    return read_text(program.folder / file);
+}
+
+}  // namespace
+
+TEST_CASE("a report has the figures, images, tables and a page of every meter") {
+    Executable program;
+    write_text(program.folder / "s.gltf", scene_text);
+    const Run run = program.run({"measure", "s.gltf", "-o", "out", "--passes", "64", "--points", "9"});
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    CHECK(run.out.find("min / max of 9 points") != std::string::npos);
+    for (const char* file : {"index.html", "figures.csv", "plane.exr", "plane.csv", "plane.map.png",
+                             "plane.sections.svg", "gonio.exr", "gonio.polar.svg", "away.csv"}) {
+        CAPTURE(file);
+        CHECK(std::filesystem::exists(program.folder / "out" / file));
+    }
+    const std::string page = text_of(program, "out/index.html");
+    CHECK(page.find("data:image/png;base64,") != std::string::npos);
+    CHECK(page.find("No light has arrived") != std::string::npos);
+    const Image image = read_exr(program.folder / "out/plane.exr");
+    CHECK(std::get<std::string>(image.attributes.at("pixelUnit")) == "lx");
+    CHECK(find_channel(image, "error.R") >= 0);
+    // A later run may take the folder; other folders are let alone.
+    CHECK(program.run({"measure", "s.gltf", "-o", "out", "--passes", "16", "-q"}).code == 0);
+    std::filesystem::create_directory(program.folder / "mine");
+    write_text(program.folder / "mine/letter.txt", "dear");
+    const Run refused = program.run({"measure", "s.gltf", "-o", "mine", "--passes", "16"});
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("holds other files") != std::string::npos);
+}
+
+TEST_CASE(
+    "parts of a measurement merge to the single run, and a resumed one goes on as if it had never ended") {
+    Executable program;
+    write_text(program.folder / "s.gltf", scene_text);
+    const auto measure = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"measure", "s.gltf", "-q"});
+        const Run run = program.run(more);
+        CAPTURE(run.err);
+        REQUIRE(run.code == 0);
+    };
+    measure({"--passes", "96", "-o", "single", "--points", "5"});
+    for (const char* range : {"64:96", "0:32", "32:64"})
+        measure(
+            {"--passes", range, "--checkpoint", std::string(range).substr(0, 1) + ".etd", "--points", "5"});
+    const Run merged =
+        program.run({"merge", "6.etd", "0.etd", "3.etd", "-o", "merged", "--stats", "stats.json"});
+    CAPTURE(merged.err);
+    REQUIRE(merged.code == 0);
+    for (const char* file : {"figures.csv", "plane.csv", "gonio.csv"})
+        CHECK(text_of(program, std::string("merged/") + file) ==
+              text_of(program, std::string("single/") + file));
+    CHECK(text_of(program, "stats.json").find("relative_error_bound") != std::string::npos);
+
+    measure({"--passes", "32", "--checkpoint", "begun.etd"});
+    measure({"--passes", "96", "--resume", "begun.etd", "-o", "resumed", "--points", "5"});
+    CHECK(text_of(program, "resumed/figures.csv") == text_of(program, "single/figures.csv"));
+
+    const Run twice = program.run({"merge", "0.etd", "begun.etd", "-o", "twice"});
+    CHECK(twice.code == 2);
+    CHECK(twice.err.find("has passes 0:32") != std::string::npos);
+    measure({"--passes", "96:112", "--seed", "1", "--checkpoint", "other.etd"});
+    CHECK(program.run({"merge", "0.etd", "other.etd", "-o", "twice"}).err.find("seed") != std::string::npos);
+    CHECK(!std::filesystem::exists(program.folder / "twice"));
+}
+
+TEST_CASE("what cannot be measured is said in one line") {
+    Executable program;
+    write_text(program.folder / "s.gltf", scene_text);
+    write_text(program.folder / "camera.gltf", small_scene());
+    const auto refusal = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), "measure");
+        const Run run = program.run(words);
+        CHECK(run.code == 2);
+        CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
+        return run.err;
+    };
+    CHECK(refusal({"camera.gltf", "-o", "out"}).find("no receiver that measures") != std::string::npos);
+    CHECK(refusal({"s.gltf"}).find("--output or --checkpoint") != std::string::npos);
+    CHECK(refusal({"s.gltf", "-o", "out", "--passes", "20"}).find("multiples") != std::string::npos);
+    CHECK(refusal({"s.gltf", "-o", "out", "--receivers", "plane,roof"}).find("allowed: plane, gonio, away") !=
+          std::string::npos);
+    CHECK(refusal({"s.gltf", "-o", "out", "--points", "7"}).find("5, 9, 13") != std::string::npos);
+    CHECK(refusal({"s.gltf", "-o", "out", "--error", "0.1", "--error-of", "best"}).find("mean or worst") !=
+          std::string::npos);
+}
