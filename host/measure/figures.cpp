@@ -40,29 +40,6 @@ Series weighted(const std::vector<std::vector<double>>& values, const std::vecto
     return series;
 }
 
-// Each replicate where the others have their extreme, by `sign` the greatest or (-1) the least.
-Series extreme(const std::vector<std::vector<double>>& values, double sign) {
-    std::vector<double> sums(values[0].size(), 0.0);
-    for (const auto& replicate : values)
-        for (size_t i = 0; i < sums.size(); ++i) sums[i] += replicate[i];
-    Series series;
-    for (const auto& replicate : values) {
-        size_t best = 0;
-        for (size_t i = 1; i < sums.size(); ++i)
-            if (sign * (sums[i] - replicate[i]) > sign * (sums[best] - replicate[best])) best = i;
-        series.push_back(replicate[best]);
-    }
-    return series;
-}
-
-std::string place_text(const Meter& meter, size_t pixel) {
-    const uint32_t column = uint32_t(pixel % meter.columns), row = uint32_t(pixel / meter.columns);
-    if (meter.is_far)
-        return fmt::format("C {:.5g}°, γ {:.5g}°", c_angle(meter, column), gamma_angle(meter, row));
-    const glm::vec3 p = meter.places[pixel].position;
-    return fmt::format("column {}, row {}: {:.4g}, {:.4g}, {:.4g} m", column, row, p.x, p.y, p.z);
-}
-
 size_t extreme_pixel(const std::vector<std::vector<double>>& values, double sign) {
     size_t best = 0;
     double most = -INFINITY;
@@ -72,6 +49,43 @@ size_t extreme_pixel(const std::vector<std::vector<double>>& values, double sign
         if (sum > most) most = sum, best = i;
     }
     return best;
+}
+
+// The extreme of many noisy values, by `sign` the greatest or (-1) the least.
+struct Extreme {
+    Series beyond;  // where all replicates together have it: rather too far out
+    Series within;  // each replicate where the others have it: rather not far enough
+};
+
+Extreme extreme(const std::vector<std::vector<double>>& values, double sign) {
+    std::vector<double> sums(values[0].size(), 0.0);
+    for (const auto& replicate : values)
+        for (size_t i = 0; i < sums.size(); ++i) sums[i] += replicate[i];
+    const size_t of_all = extreme_pixel(values, sign);
+    Extreme result;
+    for (const auto& replicate : values) {
+        size_t best = 0;
+        for (size_t i = 1; i < sums.size(); ++i)
+            if (sign * (sums[i] - replicate[i]) > sign * (sums[best] - replicate[best])) best = i;
+        result.within.push_back(replicate[best]);
+        result.beyond.push_back(replicate[of_all]);
+    }
+    return result;
+}
+
+// What holds whatever either does.
+Interval hull(const Interval& a, const Interval& b) {
+    return {0.5 * (a.value + b.value), std::min(a.low, b.low), std::max(a.high, b.high)};
+}
+
+Interval extreme_interval(const Extreme& e) { return hull(mean_interval(e.beyond), mean_interval(e.within)); }
+
+std::string place_text(const Meter& meter, size_t pixel) {
+    const uint32_t column = uint32_t(pixel % meter.columns), row = uint32_t(pixel / meter.columns);
+    if (meter.is_far)
+        return fmt::format("C {:.5g}°, γ {:.5g}°", c_angle(meter, column), gamma_angle(meter, row));
+    const glm::vec3 p = meter.places[pixel].position;
+    return fmt::format("column {}, row {}: {:.4g}, {:.4g}, {:.4g} m", column, row, p.x, p.y, p.z);
 }
 
 // Bilinear between the pixels' middles.
@@ -85,7 +99,13 @@ double at_point(const std::vector<double>& values, const Meter& meter, const Met
                     glm::mix(pixel(lo.x, hi.y), pixel(hi.x, hi.y), t.x), t.y);
 }
 
-double ratio(const std::vector<double>& m) { return m[1] != 0 ? m[0] / m[1] : NAN; }
+Interval ratio(const Series& a, const Series& b) {
+    return function_interval({a, b}, [](const auto& m) { return m[1] != 0 ? m[0] / m[1] : NAN; });
+}
+Interval ratio(const Extreme& a, const Extreme& b) {
+    return hull(ratio(a.beyond, b.beyond), ratio(a.within, b.within));
+}
+Interval ratio(const Extreme& a, const Series& b) { return hull(ratio(a.beyond, b), ratio(a.within, b)); }
 
 void add_points(std::vector<Figure>& figures, const Meter& meter,
                 const std::vector<std::vector<double>>& values, const std::vector<MeterPoint>& points) {
@@ -94,7 +114,7 @@ void add_points(std::vector<Figure>& figures, const Meter& meter,
         auto& row = at_points.emplace_back();
         for (const MeterPoint& point : points) row.push_back(at_point(replicate, meter, point));
     }
-    const Series least = extreme(at_points, -1), greatest = extreme(at_points, 1);
+    const Extreme least = extreme(at_points, -1), greatest = extreme(at_points, 1);
     const Series mean = weighted(at_points, std::vector<double>(points.size(), 1.0 / double(points.size())));
     for (size_t i = 0; i < points.size(); ++i) {
         Series series;
@@ -102,10 +122,8 @@ void add_points(std::vector<Figure>& figures, const Meter& meter,
         figures.push_back({fmt::format("point {} ({:.4g}, {:.4g})", i + 1, points[i].x, points[i].y),
                            meter.unit, mean_interval(series), ""});
     }
-    figures.push_back({fmt::format("min / max of {} points", points.size()), "",
-                       function_interval({least, greatest}, ratio), ""});
-    figures.push_back({fmt::format("min / mean of {} points", points.size()), "",
-                       function_interval({least, mean}, ratio), ""});
+    figures.push_back({fmt::format("min / max of {} points", points.size()), "", ratio(least, greatest), ""});
+    figures.push_back({fmt::format("min / mean of {} points", points.size()), "", ratio(least, mean), ""});
 }
 
 void add_colors(std::vector<Figure>& figures, const Readings& readings, const std::vector<double>& weights) {
@@ -205,7 +223,8 @@ std::vector<Figure> figures_of(const Readings& readings, const std::vector<Meter
     const Meter& meter = readings.meter;
     const auto values = luminous_values(readings);
     const std::vector<double> weights = weights_of(meter);
-    const Series mean = weighted(values, weights), least = extreme(values, -1), greatest = extreme(values, 1);
+    const Series mean = weighted(values, weights);
+    const Extreme least = extreme(values, -1), greatest = extreme(values, 1);
     std::vector<Figure> figures;
     if (meter.has_extent) {
         const double extent = extent_of(meter);
@@ -216,14 +235,14 @@ std::vector<Figure> figures_of(const Readings& readings, const std::vector<Meter
     figures.push_back({"mean", meter.unit, mean_interval(mean), ""});
     if (meter.pixels() > 1) {
         figures.push_back(
-            {"minimum", meter.unit, mean_interval(least), place_text(meter, extreme_pixel(values, -1))});
+            {"minimum", meter.unit, extreme_interval(least), place_text(meter, extreme_pixel(values, -1))});
         figures.push_back(
-            {"maximum", meter.unit, mean_interval(greatest), place_text(meter, extreme_pixel(values, 1))});
+            {"maximum", meter.unit, extreme_interval(greatest), place_text(meter, extreme_pixel(values, 1))});
     }
     if (is_dark(readings)) return figures;
     if (meter.pixels() > 1 && !meter.is_far) {
-        figures.push_back({"U0 = minimum / mean", "", function_interval({least, mean}, ratio), ""});
-        figures.push_back({"Ud = minimum / maximum", "", function_interval({least, greatest}, ratio), ""});
+        figures.push_back({"U0 = minimum / mean", "", ratio(least, mean), ""});
+        figures.push_back({"Ud = minimum / maximum", "", ratio(least, greatest), ""});
     }
     if (!points.empty() && !meter.is_far && meter.pixels() > 1) add_points(figures, meter, values, points);
     add_colors(figures, readings, weights);

@@ -3,8 +3,9 @@
 // A figure is a function of means over pixels, each known from every replicate of the render
 // (host/measure/readings.h): a mean's interval is Student's; that of a ratio or of a colour is the
 // jackknife's, which leaves each replicate out in turn (Efron & Stein 1981, "The Jackknife Estimate of
-// Variance"). The least of many noisy pixels is too low; so each replicate is read where the others have
-// their least, and likewise the greatest.
+// Variance"). The least of many noisy pixels is too low, and what the others' least pixel has in each
+// replicate too high where pixels are nearly equal: the interval of a minimum or maximum reaches around both,
+// and holds the truth in 95 % of cases where one pixel stands out, else in more.
 #pragma once
 #include <functional>
 #include <optional>

@@ -73,7 +73,7 @@ TEST_CASE("intervals hold the truth in 95 % of cases, of means, extremes and rat
                                                                   {"Ud = minimum / maximum", 90.0 / 160}};
     for (double noise : {0.01, 0.1}) {
         std::vector<int> held(expected.size(), 0);
-        const int cases = 2000;
+        const int cases = 300;
         for (int i = 0; i < cases; ++i) {
             const auto figures = figures_of(noisy_readings(truth, 4, noise, random), {});
             for (size_t f = 0; f < expected.size(); ++f) {
