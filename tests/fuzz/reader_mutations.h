@@ -5,11 +5,13 @@
 
 #include "host/image/checkpoint.h"
 #include "host/measured/measured_bsdf.h"
+#include "host/photometry/photometric_table.h"
 #include "host/scene/density_bricks.h"
 #include "host/scene/spectral_value.h"
 #include "tests/fuzz/import_mutations.h"
 #include "tests/support/bsdf_files.h"
 #include "tests/support/density_field.h"
+#include "tests/support/source_path.h"
 #include "tests/support/temporary_folder.h"
 
 namespace etendue {
@@ -66,6 +68,25 @@ inline void check_image(const std::filesystem::path& file) {
     require_finite(image.rgba32f, "texels are finite");
 }
 
+inline void check_lamp(const std::filesystem::path& file) {
+    const IntensityDistribution lamp = read_photometric_file(file);
+    if (lamp.candela.size() != lamp.planes.size() * lamp.angles.size())
+        throw std::logic_error("a table has a value for each plane and angle");
+    for (const double v : lamp.candela)
+        if (!(v >= 0 && v < 1e60)) throw std::logic_error("intensities are finite and not negative");
+    for (const auto* angles : {&lamp.planes, &lamp.angles})
+        for (size_t i = 1; i < angles->size(); ++i)
+            if (!((*angles)[i] > (*angles)[i - 1])) throw std::logic_error("angles rise");
+    if (!(lamp.flux() >= 0 && lamp.intensity(33, 44) >= 0)) throw std::logic_error("lamps send light");
+    std::vector<float> values;
+    append_photometric_table(values, lamp);
+    require_finite(values, "tables are finite");
+}
+
+inline std::string photometric_bytes(const std::string& name) {
+    return read_text(source_path("tests/host/photometry/" + name));
+}
+
 // An image of 16 x 3 texels, rows by components.
 inline std::string radiance_bytes() {
     std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 3 +X 16\n";
@@ -120,6 +141,9 @@ inline std::vector<FuzzedReader> fuzzed_readers(const TemporaryFolder& folder) {
             {"table.json", table, check_measured},
             {"spectrum.csv", "nm,value\n# measured\n400, 0.5\n500;0.25\n\n600\t1e-1\n", check_spectrum},
             {"sky.hdr", radiance_bytes(), check_image},
+            {"lamp.ies", photometric_bytes("own_lambert_1986_commas_feet.ies"), check_lamp},
+            {"floodlight.ies", photometric_bytes("own_lambert_type_b_quarter.ies"), check_lamp},
+            {"lamp.ldt", photometric_bytes("own_isym4_asym.ldt"), check_lamp},
             {"state", checkpoint_bytes(folder), check_checkpoint, seal_checkpoint}};
 }
 
