@@ -20,7 +20,8 @@
     X(3, SpotLight, spot)               \
     X(4, DirectionalLight, directional) \
     X(5, ConstantEnvironment, constant) \
-    X(6, ImageEnvironment, image)
+    X(6, ImageEnvironment, image)       \
+    X(7, IesLight, ies)
 
 // folder receivers/, contract interfaces/receiver.glsl
 #define RECEIVER_CLASSES(X)                \

@@ -89,6 +89,7 @@ std::string type_name(const Parameter& p) {
                                                              {"MeasuredRef", "file"},
                                                              {"MuellerMatrix", "16 numbers"},
                                                              {"MuellerTableRef", "file"},
+                                                             {"PhotometryRef", "file"},
                                                              {"WorldPoint", "point"},
                                                              {"Direction", "direction"}};
     if (p.default_value.is_boolean()) return "true or false";  // a bool of GLSL is a uint in a buffer

@@ -35,10 +35,11 @@ const char* const modelled_extensions[] = {"ETD_optics",
                                            "KHR_draco_mesh_compression",
                                            "EXT_meshopt_compression",
                                            "EXT_texture_webp",
+                                           "EXT_lights_ies",
                                            "EXT_mesh_gpu_instancing"};
 
 // What a scene may require although it is read past, with a warning.
-const char* const passed_extensions[] = {"EXT_lights_ies", "KHR_animation_pointer"};
+const char* const passed_extensions[] = {"KHR_animation_pointer"};
 
 bool is_among(std::span<const char* const> names, const std::string& name) {
     return std::any_of(names.begin(), names.end(), [&](const char* n) { return name == n; });

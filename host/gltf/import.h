@@ -181,6 +181,7 @@ void check_media_names(const GltfImport& import);
 // punctual.cpp: glTF's own cameras and lights.
 void read_node_camera(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local);
 void read_node_light(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local);
+void read_node_profile(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local);
 
 // meshes.cpp
 MeshRange read_mesh(GltfImport& import, uint32_t gltf_mesh, const Deformation& deformation);

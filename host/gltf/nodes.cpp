@@ -224,6 +224,7 @@ void load_nodes(GltfImport& import) {
         place_mesh(import, visit.node, world);
         read_node_camera(import, node, world);
         read_node_light(import, node, world);
+        read_node_profile(import, node, world);
         read_node_optics(import, node, world);
         std::optional<JsonAt> children = find(node, "children");
         for (size_t c = children ? (*children)->size() : 0; c-- > 0;)

@@ -216,7 +216,8 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
         };
         // A camera or lamp of glTF has been placed already: what is said here is said of that.
         const bool is_placed = (is_receiver && node->contains("camera")) ||
-                               (is_light && find_extension(node, "KHR_lights_punctual"));
+                               (is_light && (find_extension(node, "KHR_lights_punctual") ||
+                                             find_extension(node, "EXT_lights_ies")));
         if (is_placed && !(*at)->contains("class")) {
             only_members(*at, {"stokes"});
             read_stokes(objects.back());

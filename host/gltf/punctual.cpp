@@ -1,4 +1,4 @@
-// glTF's own cameras and lights (KHR_lights_punctual) as receivers and lights.
+// glTF's own cameras and lights (KHR_lights_punctual, EXT_lights_ies) as receivers and lights.
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -70,6 +70,23 @@ ObjectDescription light_description(const JsonAt& light) {
     return result;
 }
 
+// The name by which the class `ies` finds a light profile: that of a file, or the place where its text stands
+// in the scene.
+std::string profile_file(GltfImport& import, const JsonAt& profile) {
+    const std::optional<JsonAt> uri = find(profile, "uri");
+    const std::optional<uint32_t> view =
+        index(profile, "bufferView", array_size(import.root, "bufferViews"), "/bufferViews");
+    if (uri.has_value() == view.has_value())
+        fail_at(profile, "has {} uri {} bufferView; must have one of them", uri ? "both" : "neither",
+                uri ? "and" : "nor");
+    if (uri && !is_data_uri(text_value(*uri)))
+        return std::filesystem::absolute(resolve_uri(import, *uri)).string();
+    const Bytes decoded = uri ? decode_data_uri(*uri) : Bytes();
+    const std::span<const uint8_t> bytes = uri ? std::span(decoded) : import.views[*view].bytes;
+    import.scene.embedded_files[profile.pointer] = std::string(bytes.begin(), bytes.end());
+    return profile.pointer;
+}
+
 void require_directions(const JsonAt& node, const glm::dmat4& world_from_local, const char* what) {
     if (!is_invertible(world_from_local))
         fail_at(node, "has a {}, and a transform that squashes space flat", what);
@@ -96,6 +113,23 @@ void read_node_light(GltfImport& import, const JsonAt& node, const glm::dmat4& w
     require_directions(node, world_from_local, "light");
     std::string name = text(node, "name", text(light, "name", fmt::format("light {}", i)));
     import.scene.lights.push_back({name, light_description(light), without_scale(world_from_local)});
+}
+
+void read_node_profile(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local) {
+    std::optional<JsonAt> extension = find_extension(node, "EXT_lights_ies");
+    if (!extension) return;
+    std::optional<JsonAt> root = find_extension(import.root, "EXT_lights_ies");
+    const char* array = "/extensions/EXT_lights_ies/lights";
+    const uint32_t i =
+        index_value(member(*extension, "light"), root ? array_size(*root, "lights") : 0, array);
+    const JsonAt profile = element(member(*root, "lights"), i);
+    require_directions(node, world_from_local, "light");
+    ObjectDescription light{"ies", nlohmann::json::object(), extension->pointer};
+    light.parameters["file"] = profile_file(import, profile);
+    light.parameters["scale"] = number(*extension, "multiplier", 1, 0, 1e30);
+    light.parameters["color"] = numbers(*extension, "color", {1, 1, 1}, 0, max_coordinate);
+    std::string name = text(node, "name", text(profile, "name", fmt::format("light profile {}", i)));
+    import.scene.lights.push_back({name, light, without_scale(world_from_local)});
 }
 
 }  // namespace etendue

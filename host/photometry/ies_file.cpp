@@ -251,8 +251,9 @@ IntensityDistribution parse_ies(const std::string& name, std::string bytes) {
     for (size_t i = 0; i < h.size(); ++i) {
         std::vector<double>& values = of_h.emplace_back();
         for (size_t j = 0; j < v.size(); ++j)
-            values.push_back(numbers.candela(header.factor, fmt::format("intensity {} of {} at the horizontal angle {}°",
-                                                                        j + 1, v.size(), h[i])));
+            values.push_back(numbers.candela(
+                header.factor,
+                fmt::format("intensity {} of {} at the horizontal angle {}°", j + 1, v.size(), h[i])));
     }
     std::vector<PhotometricPlane> planes;
     if (is_c) {

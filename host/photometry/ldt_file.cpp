@@ -160,8 +160,8 @@ IntensityDistribution read_ldt(const std::filesystem::path& file) {
         const size_t plane = (stored.first + i) % plane_count;
         PhotometricPlane& p = planes.emplace_back(PhotometricPlane{c[plane], {}});
         for (size_t j = 0; j < angle_count; ++j)
-            p.candela.push_back(fields.candela(scale, fmt::format("intensity {} of {} in the plane C {}°", j + 1,
-                                                                  angle_count, p.longitude)));
+            p.candela.push_back(fields.candela(scale, fmt::format("intensity {} of {} in the plane C {}°",
+                                                                  j + 1, angle_count, p.longitude)));
     }
     mirror_planes(planes, symmetry == 2 || symmetry == 4, symmetry == 3 || symmetry == 4);
     set_table(d, planes);

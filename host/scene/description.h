@@ -125,6 +125,8 @@ struct SceneDescription : SceneObjects {
     std::vector<MeshDescription> meshes;
     std::vector<std::string> variants;  // of its materials, by KHR_materials_variants
     double animation_seconds = 0;       // the end of its last animation; 0 = it has none
+    // Contents of files that stand in the scene file itself, by the names that parameters have for them.
+    std::map<std::string, std::string> embedded_files;
     std::vector<std::string> warnings;  // one line each: what was read but is not modelled
 };
 

@@ -126,6 +126,9 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
     } else if (type == "MeasuredRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of a .json or .bsdf file", place);
         store(record, at, resolver.measured(value.get<std::string>()));
+    } else if (type == "PhotometryRef") {
+        if (!value.is_string()) fail_input("{}: allowed: the name of an .ies or .ldt file", place);
+        store(record, at, resolver.photometry(value.get<std::string>()));
     } else if (type == "MuellerTableRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of a .pbsdf file", place);
         store(record, at, resolver.mueller_table(value.get<std::string>()));

@@ -12,6 +12,7 @@
 
 #include "host/measured/measured_bsdf.h"
 #include "host/mie/mie_table.h"
+#include "host/photometry/photometric_table.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
 #include "host/lights/environment_map.h"
@@ -50,6 +51,8 @@ struct RecordResolver {
     // Index of the table of Mueller matrices in a file.
     std::function<uint32_t(const std::filesystem::path& file)> mueller_table =
         [](const std::filesystem::path&) { return 0u; };
+    std::function<PhotometryRef(const std::filesystem::path& file)> photometry =
+        [](const std::filesystem::path&) { return PhotometryRef{}; };
     // The table of a record of the class mie, whose parameters are filled already.
     std::function<MieRef(const ClassInfo& info, const std::vector<std::byte>& record,
                          const std::string& where)>

@@ -92,6 +92,7 @@ class SceneCompiler {
     glm::dmat4 recentred(const glm::dmat4& world_from_local) const;
 
     // scene_lights.cpp
+    PhotometryRef add_photometry(const std::filesystem::path& file);
     void add_lights();
     const glm::dmat4& placed_transform(uint32_t index) const;
     void drop_dark_triangles(std::vector<uint32_t>& primitives);

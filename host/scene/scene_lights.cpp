@@ -6,7 +6,9 @@
 #include "host/error.h"
 #include "host/lights/emission_choice.h"
 #include "host/lights/emission_texture.h"
+#include "host/photometry/ies_file.h"
 #include "host/scene/scene_compiler.h"
+#include "host/scene/scene_files.h"
 #include "host/spectra/color.h"
 
 namespace etendue {
@@ -27,6 +29,28 @@ LightStokes light_stokes(const glm::dvec3& stokes, const glm::dmat4& world_from_
 }
 
 }  // namespace
+
+PhotometryRef SceneCompiler::add_photometry(const std::filesystem::path& file) {
+    const auto embedded = in_.embedded_files.find(file.string());
+    const bool is_embedded = embedded != in_.embedded_files.end();
+    const std::filesystem::path path = is_embedded ? file : named_file(in_, file);
+    auto known = memory_.photometric_files.find(path);
+    if (known == memory_.photometric_files.end()) {
+        const IntensityDistribution d = is_embedded
+                                            ? parse_ies(message_place(in_, file.string()), embedded->second)
+                                            : read_photometric_file(path);
+        std::vector<float>& all = memory_.photometric_values;
+        PhotometryRef ref = append_photometric_table(all, d);
+        memory_.buffers.erase("PhotometricValues");
+        known = memory_.photometric_files
+                    .emplace(path, SceneMemory::PhotometricFile{ref, photometric_summary(d), d.warnings})
+                    .first;
+    }
+    if (out_.photometric_files.emplace(path, known->second.summary).second)
+        for (const std::string& warning : known->second.warnings)
+            out_.warnings.push_back(fmt::format("{}: {}", path.string(), warning));
+    return known->second.ref;
+}
 
 // Lights at infinity come first in the list (features/light_selection.glsl).
 void SceneCompiler::add_lights() {
@@ -122,6 +146,7 @@ void SceneCompiler::measure_lights() {
     for (const InterfaceInfo& interface : all_interfaces())
         upload(interface.buffer, records_[interface.interface].bytes());
     share("EnvironmentTexels", memory_.environment_texels);
+    if (!out_.photometric_files.empty()) share("PhotometricValues", memory_.photometric_values);
     upload("Materials", materials_);
     upload_world();
     upload("Lights", lights_);

@@ -14,6 +14,7 @@
 #include "host/measured/mueller_table.h"
 #include "host/mie/mie_table.h"
 #include "host/scene/classes.h"
+#include "host/photometry/photometric_table.h"
 #include "host/scene/density_bricks.h"
 #include "host/lights/emission_map.h"
 #include "host/lights/environment_map.h"
@@ -31,6 +32,13 @@ struct SceneMemory {
     // Files that parameters name: the contents of all of them, one behind the other.
     std::vector<glm::uvec4> environment_texels;  // floats, as bits
     std::map<std::filesystem::path, EnvironmentMapRef> environment_maps;
+    std::vector<float> photometric_values;
+    struct PhotometricFile {
+        PhotometryRef ref;
+        std::string summary;
+        std::vector<std::string> warnings;
+    };
+    std::map<std::filesystem::path, PhotometricFile> photometric_files;
     DensityBricks density_bricks;
     struct DensityFile {
         DensityGridRecord record;

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "host/image/exr.h"
+#include "host/photometry/intensity_distribution.h"
 #include "tests/support/emission_probe.h"
+#include "tests/support/source_path.h"
 
 namespace etendue {
 
@@ -126,6 +128,30 @@ inline std::string environment_file() {
     return path.string();
 }
 
+// Uneven steps, dark parts, a bright corner; light up and down, sharp ends.
+inline std::string wild_lamp(IntensityDistribution::Type type) {
+    static const TemporaryFolder folder;
+    const bool is_c = type == IntensityDistribution::Type::c;
+    const std::vector<double> v = is_c ? std::vector<double>{0, 4, 10, 35, 90, 91, 150, 180}
+                                       : std::vector<double>{-90, -60, -20, 5, 10, 50, 90},
+                              h = is_c ? std::vector<double>{0, 20, 90, 100, 200, 310, 360}
+                                       : std::vector<double>{-90, -30, -25, 0, 60, 90};
+    std::string text = fmt::format("IES:LM-63-2019\nTILT=NONE\n1 -1 1 {} {} {} 2 0 0 0\n1 1 0\n{}\n{}\n",
+                                   v.size(), h.size(), 1 + int(type), fmt::join(v, " "), fmt::join(h, " "));
+    for (size_t i = 0; i < h.size(); ++i)
+        for (size_t j = 0; j < v.size(); ++j) {
+            const bool at_end = !is_c && (i == 0 || j == 0 || i + 1 == h.size() || j + 1 == v.size());
+            const bool dark = at_end || (is_c && (j == 5 || j == 6));
+            text +=
+                fmt::format("{}\n", dark               ? 0
+                                    : j == 2 && i == 2 ? 90
+                                                       : (is_c && i + 1 == h.size() ? j : 7 * i + j) % 5 * 3);
+        }
+    const auto file = folder / fmt::format("{}.ies", int(type));
+    write_text(file, text);
+    return file.string();
+}
+
 inline std::vector<EmissionCase> emission_cases() {
     const auto down = [](double z) {  // +z becomes -z
         return glm::dmat4({1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0.1, 0, z, 1});
@@ -151,6 +177,17 @@ inline std::vector<EmissionCase> emission_cases() {
         {"spot", "sharp", light_scene("spot", {{"inner_cone_angle", 0.5}, {"outer_cone_angle", 0.5}})},
         {"spot", "narrow", light_scene("spot", {{"inner_cone_angle", 0.0004}, {"outer_cone_angle", 0.001}}),
          1e-4, in_beam},
+        {"ies", "type C",
+         light_scene("ies",
+                     {{"file", wild_lamp(IntensityDistribution::Type::c)}, {"turn", 1}, {"flux", 50}})},
+        {"ies", "type B",
+         light_scene("ies", {{"file", wild_lamp(IntensityDistribution::Type::b)}, {"scale", 2}})},
+        {"ies", "type A",
+         light_scene("ies",
+                     {{"file", wild_lamp(IntensityDistribution::Type::a)}, {"color", {1, 0.5, 0.25}}})},
+        {"ies", "axial",
+         light_scene("ies",
+                     {{"file", source_path("tests/host/photometry/own_lambert_1986_commas_feet.ies")}})},
         {"directional", "", light_scene("directional", {{"intensity", 5}})},
         {"constant", "", environment_scene("constant", {{"radiance", {1, 2, 3}}})},
         {"image", "", environment_scene("image", {{"file", environment_file()}, {"rotation", 1}}), 1e-4},

@@ -23,7 +23,9 @@ struct Probed {
     std::unique_ptr<EmissionProbe> probe;
     std::vector<ProbedRay> rays;
     bool has_surface() const { return c.class_name == "area"; }
-    bool has_position() const { return c.class_name == "point" || c.class_name == "spot"; }
+    bool has_position() const {
+        return c.class_name == "point" || c.class_name == "spot" || c.class_name == "ies";
+    }
 };
 
 std::vector<Probed>& probed() {

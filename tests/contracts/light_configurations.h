@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/support/light_probe.h"
+#include "tests/support/source_path.h"
 
 namespace etendue {
 
@@ -25,6 +26,11 @@ inline ImageDescription probe_image(uint32_t width, uint32_t height) {
         image.rgba32f[((height / 4) * width + width - 1) * 4 + c] = 20;  // beside the seam
     for (int c = 0; c < 3; ++c) image.rgba32f[(width / 2) * 4 + c] = 5;  // beside the pole
     return image;
+}
+
+// Of those that stand beside the tests of the readers.
+inline std::string photometric_file(const std::string& name) {
+    return source_path("tests/host/photometry/" + name);
 }
 
 struct LightConfiguration {
@@ -64,6 +70,16 @@ inline std::vector<LightConfiguration> light_configurations(const std::string& n
             {"7 x 5, turned", {{"file", "f"}, {"rotation", 1.234}}, glm::dmat4(1.0), probe_image(7, 5), {}},
             {"64 x 32", {{"file", "f"}, {"rotation", -2}}, glm::dmat4(1.0), probe_image(64, 32), {}},
             {"1 x 1", {{"file", "f"}}, glm::dmat4(1.0), probe_image(1, 1), {}}};
+    if (name == "ies") {
+        std::vector<LightConfiguration> all;
+        for (const char* file : {"own_asym_0_360.ies", "own_lambert_type_b_quarter.ies"})
+            all.push_back({file,
+                           {{"file", photometric_file(file)}, {"turn", 0.7}},
+                           tilted_node(),
+                           {},
+                           {0.7f, 0.2f, -3}});
+        return all;
+    }
     return {};
 }
 

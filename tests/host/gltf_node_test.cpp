@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
 
 #include "tests/host/gltf_scene_builder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
+using nlohmann::json;
 
 TEST_CASE("transforms of nested nodes multiply in double precision") {
     GltfBuilder b;
@@ -144,4 +146,32 @@ TEST_CASE("punctual lights become lights with the parameters of their classes") 
                                                           {"outer_cone_angle", 0.4}});
     CHECK(s.lights[1].object.parameters == nlohmann::json{{"color", {1.0, 1.0, 1.0}}, {"intensity", 1.0}});
     CHECK(s.lights[2].name == "lamp");
+}
+
+TEST_CASE("light profiles of EXT_lights_ies become lights of class ies, from files, buffers and data URIs") {
+    const TemporaryFolder folder;
+    write_text(folder / "a lamp.ies", "x");
+    GltfBuilder b;
+    json& profiles = b.document["extensions"]["EXT_lights_ies"]["lights"];
+    profiles = {{{"uri", "a%20lamp.ies"}, {"name", "lamp"}},
+                {{"uri", "data:application/x-ies-lm-63;base64,VElMVA=="}}};
+    b.node({{"extensions", {{"EXT_lights_ies", {{"light", 0}, {"multiplier", 2}, {"color", {1, 0.5, 0}}}}}},
+            {"scale", {3, 3, 3}}});
+    b.node({{"name", "inline"}, {"extensions", {{"EXT_lights_ies", {{"light", 1}}}}}});
+    b.document["extensionsUsed"] = json::array({"EXT_lights_ies"});
+    b.document["extensionsRequired"] = json::array({"EXT_lights_ies"});
+    write_text(folder / "scene.gltf", b.document.dump());
+    const SceneDescription s = import_gltf(folder / "scene.gltf", {});
+    CHECK(s.warnings.empty());
+    REQUIRE(s.lights.size() == 2);
+    CHECK(s.lights[0].name == "lamp");
+    CHECK(s.lights[0].object.class_name == "ies");
+    CHECK(s.lights[0].object.parameters ==
+          json{{"file", (folder / "a lamp.ies").string()}, {"scale", 2.0}, {"color", {1.0, 0.5, 0.0}}});
+    CHECK(glm::length(s.lights[0].world_from_local[2]) == doctest::Approx(1));
+    CHECK(s.embedded_files.at(s.lights[1].object.parameters["file"]) == "TILT");
+
+    profiles[1] = json::object();
+    write_text(folder / "scene.gltf", b.document.dump());
+    CHECK_THROWS_AS(import_gltf(folder / "scene.gltf", {}), Error);
 }

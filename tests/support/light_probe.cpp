@@ -59,19 +59,24 @@ LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& para
     REQUIRE(info);
     std::vector<glm::uvec4> texels(1);
     SceneDescription scene;
-    const RecordResolver resolver{scene, {}, {}, [&](const std::filesystem::path&, const std::string&) {
-                                      EnvironmentMap map = build_environment_map(image);
-                                      texels = map.texels;
-                                      texels.insert(texels.begin(),
-                                                    glm::uvec4(0));  // `first` is not always 0
-                                      map.ref.first = 1;
-                                      return map.ref;
-                                  }};
+    std::vector<float> photometric(1);
+    RecordResolver resolver{scene, {}, {}, [&](const std::filesystem::path&, const std::string&) {
+                                EnvironmentMap map = build_environment_map(image);
+                                texels = map.texels;
+                                texels.insert(texels.begin(),
+                                              glm::uvec4(0));  // `first` is not always 0
+                                map.ref.first = 1;
+                                return map.ref;
+                            }};
+    resolver.photometry = [&](const std::filesystem::path& file) {
+        return append_photometric_table(photometric, read_photometric_file(file));
+    };
     RecordBuffer records;
     records.add(*info, fill_record(*info, {class_name, parameters, "/light"}, placement, resolver));
     records.layout();
     records_ = create_buffer(test_device(), records.bytes(), "light records");
     texels_ = create_buffer(test_device(), texels, "environment texels");
+    photometric_ = create_buffer(test_device(), photometric, "photometric values");
     lights_ = create_buffer(test_device(), std::vector<uint32_t>{records.ref(*info, 0)}, "lights");
     sources_ = test_sources();
     sources_.generated["generated/light_classes.glsl"] =
@@ -87,6 +92,7 @@ Kernel LightProbe::kernel(const std::string& name, const std::string& text, Buff
     options.defines = features_.defines();
     buffers["LightRecords"] = &records_;
     buffers["EnvironmentTexels"] = &texels_;
+    buffers["PhotometricValues"] = &photometric_;
     buffers["Lights"] = &lights_;
     return Kernel(test_device(), compile_shader(sources, name, options), buffers);
 }

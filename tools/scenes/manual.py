@@ -165,7 +165,22 @@ def rough_gold():
     return head + b"".join(data for _, _, _, data in fields)
 
 
-FILES = {"sky.hdr": sky, "paint.json": paint, "gold.pbsdf": rough_gold}
+def washer():
+    """A photometric file of a wall washer: a lobe at 38 degrees towards C0, and a narrow beam straight on."""
+    def candela(c, gamma):
+        lobe = 900 * math.exp(-(((gamma - 38) / 16) ** 2)) * max(0, 0.5 + 0.5 * math.cos(math.radians(c))) ** 3
+        beam = 260 * math.exp(-((gamma / 14) ** 2))
+        return (lobe + beam) * max(0, math.cos(math.radians(gamma))) ** 0.5 if gamma < 90 else 0
+
+    gammas, planes = range(0, 91, 5), range(0, 181, 15)
+    lines = ["IES:LM-63-2019", "[TEST] computed", "[TESTLAB] étendue", "[ISSUEDATE] 2026", "[MANUFAC] none",
+             "[LUMINAIRE] wall washer, a formula", "TILT=NONE", f"1 -1 1 {len(gammas)} {len(planes)} 1 2 0 0 0", "1 1.00010 9"]
+    lines += [" ".join(map(str, gammas)), " ".join(map(str, planes))]
+    lines += [" ".join(f"{candela(c, gamma):.1f}" for gamma in gammas) for c in planes]
+    return ("\n".join(lines) + "\n").encode()
+
+
+FILES = {"sky.hdr": sky, "paint.json": paint, "gold.pbsdf": rough_gold, "washer.ies": washer}
 
 
 def write_showcases(folder):

@@ -1,0 +1,179 @@
+// A lamp as its maker publishes it: a photometric file, IES LM-63 (.ies) or EULUMDAT (.ldt), says its luminous intensity in every
+// direction. It hangs at its node and shines down -z: gamma = 0 is -z, the plane C0 lies towards +x, C90 towards +y; of types B and A,
+// V = H = 0 is -z, positive V lie towards +x, H towards +y. Of the node's transform only position and directions count.
+//
+// It is a point, as the file's intensities are those from far away: nearer than some five times the size of its luminous opening,
+// which `etendue inspect` tells, light falls otherwise than here.
+//
+// Intensity is bilinear in both angles of the table and 0 beyond its ends. Directions are sampled exactly in proportion to it: the
+// angle from the pole by its integral, then the longitude within that.
+//
+// Example:
+//     {"nodes": [{"name": "wall washer", "translation": [0, 1.9, 0.3], "rotation": [-0.7071, 0, 0, 0.7071], "extensions": {"ETD_optics": {
+//         "light": {"class": "ies", "file": "washer.ies", "turn": 1.57, "flux": 40}}}}]}
+
+// A table on the device, twin in host/photometry/photometric_table.h. Layout of photometric_values from `first`, with M angles and
+// N planes:
+//   M angles, rad; M parts of the flux up to the angle, 0 to 1; N planes, rad from the first one
+//   N x M intensities, cd, those of the first angle first
+//   N x M integrals of these over the planes up to the plane, cd rad
+struct PhotometryRef {
+    uint first;
+    uint planes, angles;
+    uint type;       // 0, 1, 2: C, B, A
+    float start;     // longitude of the first plane, rad
+    float flux;      // lm
+    float cos_lit;   // of the angle from -z within which all light goes
+};
+
+struct IesLight {
+    Placement placement;
+    PhotometryRef file;  //: required. Photometric file, .ies or .ldt.
+    float flux;          //: 0 in [0, inf) lm. Luminous flux that the lamp is scaled to; 0: as the file says.
+    float scale;         //: 1 in [0, inf). Multiplies the intensity.
+    SpectrumRef color;   //: 1 in [0, inf). Multiplies the intensity.
+    float turn;          //: 0 rad. Turns the lamp about -z, from C0 to C90: makers differ in where C0 is.
+};
+
+layout(scalar, set = 0) readonly buffer PhotometricValues { float photometric_values[]; };
+
+// The pole of the table and its longitudes 0 and 90, in the world.
+mat3 ies_axes(IesLight r) {
+    mat4x3 m = r.placement.world_from_local;
+    vec3 z = normalize(m[2]);
+    vec3 x = normalize(m[0] - z * dot(z, m[0]));
+    vec3 y = cross(z, x);
+    y *= dot(y, m[1]) < 0.0 ? -1.0 : 1.0;
+    vec2 t = cos_sin_turns(r.turn * (0.5 * INV_PI));
+    vec3 c0 = t.x * x + t.y * y, c90 = t.x * y - t.y * x;
+    return r.file.type == 0u ? mat3(-z, c0, c90) : r.file.type == 1u ? mat3(c90, -z, c0) : mat3(c0, -z, c90);
+}
+
+float ies_scale(IesLight r) { return r.flux > 0.0 ? r.scale * r.flux / max(r.file.flux, 1e-30) : r.scale; }
+
+// The last of `count` rising numbers, but for the very last, that is at most `value`.
+uint photometric_search(uint first, uint count, float value) {
+    uint low = 0u, high = count - 1u;
+    [[dont_unroll]] while (high - low > 1u) {
+        uint middle = (low + high) / 2u;
+        if (photometric_values[first + middle] <= value)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+// cd, of the file itself, along a unit direction away from the lamp.
+float ies_table(IesLight r, vec3 direction) {
+    PhotometryRef f = r.file;
+    vec3 d = direction * ies_axes(r);
+    float angle = accurate_atan2(length(d.yz), d.x);
+    float longitude = accurate_atan2(d.z, d.y) - f.start;
+    longitude -= 2.0 * PI * floor(longitude * (0.5 * INV_PI));
+    uint sums = f.first + f.angles, planes = sums + f.angles, values = planes + f.planes;
+    float last_angle = photometric_values[f.first + f.angles - 1u], last_plane = photometric_values[planes + f.planes - 1u];
+    const float slack = 2e-6;  // what rounding may make of the outermost angles
+    if (angle < photometric_values[f.first] - slack || angle > last_angle + slack || longitude > last_plane + slack) return 0.0;
+    uint j = photometric_search(f.first, f.angles, angle), i = photometric_search(planes, f.planes, longitude);
+    float a = photometric_values[f.first + j], b = photometric_values[f.first + j + 1u];
+    float c = photometric_values[planes + i], e = photometric_values[planes + i + 1u];
+    float y = clamp((angle - a) / (b - a), 0.0, 1.0), x = clamp((longitude - c) / (e - c), 0.0, 1.0);
+    uint at = values + j * f.planes + i, next = at + f.planes;
+    return mix(mix(photometric_values[at], photometric_values[at + 1u], x),
+               mix(photometric_values[next], photometric_values[next + 1u], x), y);
+}
+
+// Density of directions, 1/sr.
+float ies_density(IesLight r, vec3 direction) { return r.file.flux > 0.0 ? ies_table(r, direction) / r.file.flux : 0.0; }
+
+// The integral of (a + b t) sin(start + t) over t in [0, d], of which `ends` are the cosine and sine of `start`.
+float ies_row_integral(float a, float b, vec2 ends, float d) {
+    vec2 half_turn = cos_sin_turns(d * (0.25 * INV_PI));
+    float versed = 2.0 * square(half_turn.y), s = 2.0 * half_turn.x * half_turn.y, z = d * d;
+    // sin d - d cos d: small ones by their series
+    float turned = d < 0.5 ? d * z * ((1.0 / 3.0) - z * ((1.0 / 30.0) - z * (1.0 / 840.0))) : s - d * (1.0 - versed);
+    return ends.y * (a * s + b * (d * s - versed)) + ends.x * (a * versed + b * turned);
+}
+
+// Undoes it: a bracket that halves or follows the tangent. `width`: of the row, rad.
+float ies_row_inverse(float a, float b, float start, float width, float integral) {
+    vec2 ends = cos_sin_turns(start * (0.5 * INV_PI));
+    float low = 0.0, high = width;
+    float d = 0.5 * width;
+    [[dont_unroll]] for (uint k = 0u; k < 14u; ++k) {
+        float off = ies_row_integral(a, b, ends, d) - integral;
+        if (off > 0.0)
+            high = d;
+        else
+            low = d;
+        float slope = (a + b * d) * cos_sin_turns((start + d) * (0.5 * INV_PI)).y;
+        float next = d - off / slope;
+        d = slope > 0.0 && next > low && next < high ? next : 0.5 * (low + high);
+    }
+    return d;
+}
+
+LightSample ies_sample_towards(IesLight r, vec3 point, vec2 u) {
+    vec3 d = r.placement.world_from_local[3] - point;
+    float distance = length(d);
+    if (!(distance > 0.0)) return no_light_sample();
+    vec3 direction = d / distance;
+    float candela = ies_table(r, -direction);
+    if (!(candela > 0.0)) return no_light_sample();
+    return LightSample(direction, distance, untinted_value(r.color) * (candela * ies_scale(r)), square(distance),
+                       candela / r.file.flux, true);
+}
+
+float ies_pdf_towards(IesLight r, vec3 point, vec3 direction, LightHit hit) {
+    vec3 d = hit.position - point;
+    return dot(d, d);
+}
+
+Spectrum ies_radiance(IesLight r, vec3 direction, LightHit hit) { return Spectrum(0); }
+
+EmittedRay ies_emit(IesLight r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
+    PhotometryRef f = r.file;
+    if (!(f.flux > 0.0)) return no_emitted_ray();
+    uint sums = f.first + f.angles, planes = sums + f.angles, values = planes + f.planes, integrals = values + f.planes * f.angles;
+    u_direction = max(u_direction, vec2(0.5 * EPSILON));
+
+    uint j = photometric_search(sums, f.angles, u_direction.x);
+    float start = photometric_values[f.first + j], width = photometric_values[f.first + j + 1u] - start;
+    uint row = integrals + j * f.planes, next = row + f.planes;
+    float a = photometric_values[row + f.planes - 1u], b = photometric_values[next + f.planes - 1u];
+    float angle = ies_row_inverse(a, (b - a) / width, start, width, (u_direction.x - photometric_values[sums + j]) * f.flux);
+    float y = clamp(angle / width, 0.0, 1.0);
+
+    float wanted = u_direction.y * mix(a, b, y);
+    uint low = 0u, high = f.planes - 1u;
+    [[dont_unroll]] while (high - low > 1u) {
+        uint middle = (low + high) / 2u;
+        if (mix(photometric_values[row + middle], photometric_values[next + middle], y) <= wanted)
+            low = middle;
+        else
+            high = middle;
+    }
+    uint at = values + j * f.planes + low, below = at + f.planes;
+    float from = mix(photometric_values[at], photometric_values[below], y),
+          to = mix(photometric_values[at + 1u], photometric_values[below + 1u], y);
+    float here = photometric_values[planes + low], step = photometric_values[planes + low + 1u] - here;
+    float rest = max(wanted - mix(photometric_values[row + low], photometric_values[next + low], y), 0.0) / step;
+    float x = clamp(2.0 * rest / max(from + sqrt(max(from * from + 2.0 * (to - from) * rest, 0.0)), 1e-30), 0.0, 1.0);
+
+    float candela = mix(from, to, x);
+    if (!(candela > 0.0)) return no_emitted_ray();
+    vec2 polar = cos_sin_turns((start + angle) * (0.5 * INV_PI));
+    vec2 around = cos_sin_turns((f.start + here + x * step) * (0.5 * INV_PI));
+    vec3 direction = normalize(ies_axes(r) * vec3(polar.x, polar.y * around));
+    return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction,
+                      untinted_value(r.color) * (candela * ies_scale(r)), candela / f.flux, true, true);
+}
+
+float ies_pdf_emit(IesLight r, SceneBounds bounds, vec3 direction, LightHit hit) { return ies_density(r, -direction); }
+
+float ies_power(IesLight r, SceneBounds bounds) { return r.file.flux * ies_scale(r) * luminance(untinted_value(r.color)); }
+
+void ies_bounds(IesLight r, out vec3 lo, out vec3 hi) { lo = hi = r.placement.world_from_local[3]; }
+
+LightCone ies_cone(IesLight r) { return LightCone(-normalize(r.placement.world_from_local[2]), r.file.cos_lit, 1.0); }

@@ -1,0 +1,147 @@
+// Lamps of photometric files: what they light a floor with, against the intensities of the file and between
+// algorithms.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "host/photometry/intensity_distribution.h"
+#include "tests/renders/agreement_scenes.h"
+#include "tests/renders/algorithm_comparison.h"
+#include "tests/support/source_path.h"
+
+using namespace etendue;
+using nlohmann::json;
+
+namespace {
+
+constexpr Algorithm all_algorithms[] = {Algorithm::backward, Algorithm::forward, Algorithm::bidirectional};
+
+// The xy plane of a node that is turned so lies flat and faces up; one that is turned the other way shines
+// down.
+constexpr double h = std::numbers::sqrt2 / 2;
+
+std::string file_of(const std::string& name) { return source_path("tests/host/photometry/" + name); }
+
+void add_floor_meter(SceneBuilder& s, const std::string& name, double x, double z, double size) {
+    s.placed("receiver", {{"class", "illuminance"}, {"size", {size, size}}, {"resolution", {1, 1}}},
+             {{x, 0, z}, {-h, 0, 0, h}});
+    s.document["nodes"].back()["name"] = name;
+}
+
+WindowMean measured(Scene& scene, const std::string& receiver, Algorithm algorithm, uint32_t passes) {
+    RenderPlan plan;
+    plan.width = plan.height = 1, plan.receiver = receiver;
+    plan.algorithm = algorithm, plan.passes = passes;
+    plan.forward_paths = 4096;
+    return window_mean(render_estimates(scene, plan));
+}
+
+// lx on a floor at y = 0, whose normal is +y, mean over a square. `frame`: the lamp's x, y, z in the world.
+double floor_illuminance(const IntensityDistribution& d, const glm::dmat3& frame, const glm::dvec3& lamp,
+                         double x, double z, double size) {
+    double sum = 0;
+    const int n = 24;
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const glm::dvec3 point(x + ((i + 0.5) / n - 0.5) * size, 0, z + ((k + 0.5) / n - 0.5) * size),
+                way = point - lamp;
+            const double distance = glm::length(way);
+            sum += d.intensity(way / distance * frame) * lamp.y / (distance * distance * distance);
+        }
+    return sum / (n * n);
+}
+
+}  // namespace
+
+TEST_CASE("a photometric lamp lights a floor as its file says, in every algorithm, hung and turned") {
+    struct Case {
+        const char* file;
+        json parameters;
+        double turn;  // about the lamp's own axis, towards C90
+        double factor;
+    };
+    for (const Case& c : std::vector<Case>{{"own_asym_0_360.ies", json::object(), 0, 1},
+                                           {"own_asym_0_360.ies", {{"turn", 0.8}, {"scale", 2}}, 0.8, 2},
+                                           {"own_isym4_asym.ldt", {{"flux", 1998.7298}}, 0, 2},
+                                           {"own_lambert_type_b_quarter.ies", json::object(), 0, 1}}) {
+        INFO(c.file, " ", c.parameters.dump());
+        const IntensityDistribution d = read_photometric_file(file_of(c.file));
+        const glm::dvec3 place(0.3, 2.5, -0.2);
+        // -z looks down: x stays, y lies towards -z.
+        const glm::dvec3 x(1, 0, 0), y(0, 0, -1), z(0, 1, 0);
+        const glm::dmat3 frame(std::cos(c.turn) * x + std::sin(c.turn) * y,
+                               std::cos(c.turn) * y - std::sin(c.turn) * x, z);
+        SceneBuilder s;
+        s.rectangle(20, 20, s.lambertian(0), {{0, 0, 0}, {-h, 0, 0, h}});
+        json lamp = c.parameters;
+        lamp["class"] = "ies", lamp["file"] = file_of(c.file);
+        s.placed("light", lamp, {{place.x, place.y, place.z}, {-h, 0, 0, h}});
+        const std::vector<glm::dvec2> spots = {{0.3, -0.2}, {1.5, -0.2}, {0.3, -2}, {-2, 1.5}, {1, 2}};
+        for (size_t i = 0; i < spots.size(); ++i)
+            add_floor_meter(s, std::to_string(i), spots[i].x, spots[i].y, 0.4);
+        Scene scene = compile_test_scene(s.import());
+        CHECK(scene.power == doctest::Approx(d.flux() * c.factor).epsilon(1e-5));
+        for (size_t i = 0; i < spots.size(); ++i)
+            for (const Algorithm algorithm : all_algorithms) {
+                CAPTURE(i);
+                CAPTURE(algorithm_name(algorithm));
+                const double expected =
+                    c.factor * floor_illuminance(d, frame, place, spots[i].x, spots[i].y, 0.4);
+                const WindowMean seen = measured(scene, std::to_string(i), algorithm, 64);
+                CAPTURE(expected);
+                CAPTURE(seen.mean);
+                CHECK(std::fabs(seen.mean - expected) < 4 * seen.standard_error + 3e-4 * expected);
+                CHECK(seen.standard_error < 0.02 * expected);
+            }
+    }
+}
+
+TEST_CASE("far away a photometric lamp has the intensities of its file") {
+    const IntensityDistribution d = read_photometric_file(file_of("own_asym_0_360.ies"));
+    SceneBuilder s;
+    s.placed("light", {{"class", "ies"}, {"file", file_of("own_asym_0_360.ies")}}, at(0, 0, 0));
+    s.placed("receiver", {{"class", "intensity"}, {"resolution", {4, 19}}}, at(0, 0, 0));
+    s.document["nodes"].back()["name"] = "far";
+    Scene scene = compile_test_scene(s.import());
+    RenderPlan plan;
+    plan.width = 4, plan.height = 19, plan.receiver = "far";
+    plan.algorithm = Algorithm::forward, plan.passes = 512, plan.forward_paths = 64;
+    const Estimates e = render_estimates(scene, plan);
+    for (uint32_t column = 0; column < 4; ++column)
+        for (uint32_t row = 2; row < 8; row += 5) {  // gamma = 20, 70: means over 10 x 90 degrees
+            double sum = 0, weights = 0;
+            for (int i = 0; i < 40; ++i)
+                for (int k = 0; k < 40; ++k) {
+                    const double c = 90.0 * column + ((i + 0.5) / 40 - 0.5) * 90,
+                                 gamma = 10.0 * row + ((k + 0.5) / 40 - 0.5) * 10;
+                    const double weight = std::sin(gamma * std::numbers::pi / 180);
+                    sum += weight * d.intensity(c, gamma), weights += weight;
+                }
+            const WindowMean seen = window_mean(e, {column, row, column + 1, row + 1});
+            CAPTURE(column);
+            CAPTURE(row);
+            CAPTURE(seen.mean);
+            CHECK(std::fabs(seen.mean - sum / weights) < 4.5 * seen.standard_error + 1e-3 * sum / weights);
+            CHECK(seen.standard_error < 0.03 * sum / weights);
+        }
+}
+
+TEST_CASE("a room lit by a photometric lamp: all algorithms agree") {
+    SceneBuilder s;
+    add_room(s);
+    s.medium("glass", {{"ior", 1.5}});
+    s.sphere(0.4, s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}),
+             at(-0.5, -1.2, 0.2));
+    s.placed(
+        "light",
+        {{"class", "ies"}, {"file", file_of("own_asym_0_360.ies")}, {"turn", 1.0}, {"color", {1, 0.8, 0.5}}},
+        {{0, 1.5, 0}, {-h, 0, 0, h}});
+    s.placed("receiver", {{"class", "illuminance"}, {"size", {1.6, 1.2}}, {"resolution", {32, 24}}},
+             {{0, -2, 0}, {-h, 0, 0, h}});
+    s.document["nodes"].back()["name"] = "floor";
+    Scene scene = compile_test_scene(s.import());
+    check_against_backward(
+        scene,
+        {.backward = 128, .forward = 32, .bidirectional = 16, .largest_error = 0.02, .receiver = "floor"});
+}
