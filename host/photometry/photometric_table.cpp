@@ -24,6 +24,24 @@ double lit_cosine(const IntensityDistribution& d) {
     return std::cos(d.angles[std::min(dark, d.angles.size() - 1)] * degree + 1e-4);
 }
 
+uint32_t shape_of(LuminousOpening::Kind kind) {
+    using Kind = LuminousOpening::Kind;
+    switch (kind) {
+        case Kind::point:
+            return 0;
+        case Kind::rectangle:
+        case Kind::box:
+            return 1;
+        case Kind::disk:
+        case Kind::ellipse:
+        case Kind::cylinder:
+            return 2;
+        case Kind::sphere:
+            return 3;
+    }
+    return 0;
+}
+
 }  // namespace
 
 PhotometryRef append_photometric_table(std::vector<float>& values, const IntensityDistribution& d) {
@@ -43,7 +61,10 @@ PhotometryRef append_photometric_table(std::vector<float>& values, const Intensi
                             uint32_t(d.type),
                             float(start * degree),
                             float(flux),
-                            float(std::max(lit_cosine(d), -1.0))};
+                            float(std::max(lit_cosine(d), -1.0)),
+                            shape_of(d.opening.kind),
+                            uint32_t(d.opening.axis),
+                            glm::vec3(d.opening.size)};
     for (const double angle : d.angles) values.push_back(float(angle * degree));
     double below = 0;
     for (size_t j = 0; j < angles; ++j) {
@@ -65,10 +86,7 @@ PhotometryRef append_photometric_table(std::vector<float>& values, const Intensi
 }
 
 std::string photometric_summary(const IntensityDistribution& d) {
-    std::string text =
-        fmt::format("{:.6g} lm, peak {:.6g} cd, opening {}", d.flux(), d.peak(), opening_text(d.opening));
-    if (d.opening.kind != LuminousOpening::Kind::point) text += ", taken as a point";
-    return text;
+    return fmt::format("{:.6g} lm, peak {:.6g} cd, opening {}", d.flux(), d.peak(), opening_text(d.opening));
 }
 
 }  // namespace etendue

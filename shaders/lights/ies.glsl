@@ -2,8 +2,9 @@
 // direction. It hangs at its node and shines down -z: gamma = 0 is -z, the plane C0 lies towards +x, C90 towards +y; of types B and A,
 // V = H = 0 is -z, positive V lie towards +x, H towards +y. Of the node's transform only position and directions count.
 //
-// It is a point, as the file's intensities are those from far away: nearer than some five times the size of its luminous opening,
-// which `etendue inspect` tells, light falls otherwise than here.
+// Light comes from all of its luminous opening, as the file has it (`etendue inspect` tells), with its centre at the node: every part
+// of it sends light as the file says of the whole lamp. A rectangle or disk so has the radiance I / (A cos); boxes, tubes and balls
+// shine evenly from within. The opening is no surface: what is seen of the lamp itself is black, in mirrors, too.
 //
 // Intensity is bilinear in both angles of the table and 0 beyond its ends. Directions are sampled exactly in proportion to it: the
 // angle from the pole by its integral, then the longitude within that.
@@ -24,6 +25,9 @@ struct PhotometryRef {
     float start;     // longitude of the first plane, rad
     float flux;      // lm
     float cos_lit;   // of the angle from -z within which all light goes
+    uint shape;      // of the opening: 0 a point, 1 a box, 2 round about an axis, 3 a ball
+    uint axis;       // 0 to 2: C0, C90, z
+    vec3 size;       // m, along C0, C90 and z
 };
 
 struct IesLight {
@@ -33,20 +37,46 @@ struct IesLight {
     float scale;         //: 1 in [0, inf). Multiplies the intensity.
     SpectrumRef color;   //: 1 in [0, inf). Multiplies the intensity.
     float turn;          //: 0 rad. Turns the lamp about -z, from C0 to C90: makers differ in where C0 is.
+    bool point;          //: false. All light comes from the node, whatever the luminous opening.
 };
 
 layout(scalar, set = 0) readonly buffer PhotometricValues { float photometric_values[]; };
 
-// The pole of the table and its longitudes 0 and 90, in the world.
-mat3 ies_axes(IesLight r) {
+// C0, C90 and the lamp's back, in the world.
+mat3 ies_frame(IesLight r) {
     mat4x3 m = r.placement.world_from_local;
     vec3 z = normalize(m[2]);
     vec3 x = normalize(m[0] - z * dot(z, m[0]));
     vec3 y = cross(z, x);
     y *= dot(y, m[1]) < 0.0 ? -1.0 : 1.0;
     vec2 t = cos_sin_turns(r.turn * (0.5 * INV_PI));
-    vec3 c0 = t.x * x + t.y * y, c90 = t.x * y - t.y * x;
-    return r.file.type == 0u ? mat3(-z, c0, c90) : r.file.type == 1u ? mat3(c90, -z, c0) : mat3(c0, -z, c90);
+    return mat3(t.x * x + t.y * y, t.x * y - t.y * x, z);
+}
+
+// The pole of the table and its longitudes 0 and 90, in the world.
+mat3 ies_axes(IesLight r) {
+    mat3 f = ies_frame(r);
+    return r.file.type == 0u ? mat3(-f[2], f[0], f[1]) : r.file.type == 1u ? mat3(f[1], -f[2], f[0]) : mat3(f[0], -f[2], f[1]);
+}
+
+bool ies_is_point(IesLight r) { return r.point || r.file.shape == 0u; }
+
+// A point of the opening, evenly: a lower part of u serves as a third number.
+vec3 ies_position(IesLight r, vec2 u) {
+    vec3 center = r.placement.world_from_local[3];
+    if (ies_is_point(r)) return center;
+    float third = fract(1024.0 * u.x);
+    vec3 p;
+    if (r.file.shape == 1u) {
+        p = vec3(u, third) - 0.5;
+    } else if (r.file.shape == 2u) {
+        vec2 across = 0.5 * warp_disk(u);
+        float along = third - 0.5;
+        p = r.file.axis == 0u ? vec3(along, across) : r.file.axis == 1u ? vec3(across.x, along, across.y) : vec3(across, along);
+    } else {
+        p = 0.5 * pow(third, 1.0 / 3.0) * warp_sphere(u);
+    }
+    return center + ies_frame(r) * (p * r.file.size);
 }
 
 float ies_scale(IesLight r) { return r.flux > 0.0 ? r.scale * r.flux / max(r.file.flux, 1e-30) : r.scale; }
@@ -114,8 +144,9 @@ float ies_row_inverse(float a, float b, float start, float width, float integral
     return d;
 }
 
+// A point of the opening is drawn here and in emit alike, so that what is left to say of both is what is said of a point.
 LightSample ies_sample_towards(IesLight r, vec3 point, vec2 u) {
-    vec3 d = r.placement.world_from_local[3] - point;
+    vec3 d = ies_position(r, u) - point;
     float distance = length(d);
     if (!(distance > 0.0)) return no_light_sample();
     vec3 direction = d / distance;
@@ -166,7 +197,7 @@ EmittedRay ies_emit(IesLight r, SceneBounds bounds, vec2 u_position, vec2 u_dire
     vec2 polar = cos_sin_turns((start + angle) * (0.5 * INV_PI));
     vec2 around = cos_sin_turns((f.start + here + x * step) * (0.5 * INV_PI));
     vec3 direction = normalize(ies_axes(r) * vec3(polar.x, polar.y * around));
-    return EmittedRay(r.placement.world_from_local[3], vec3(0), direction, direction,
+    return EmittedRay(ies_position(r, u_position), vec3(0), direction, direction,
                       untinted_value(r.color) * (candela * ies_scale(r)), candela / f.flux, true, true);
 }
 
@@ -174,6 +205,12 @@ float ies_pdf_emit(IesLight r, SceneBounds bounds, vec3 direction, LightHit hit)
 
 float ies_power(IesLight r, SceneBounds bounds) { return r.file.flux * ies_scale(r) * luminance(untinted_value(r.color)); }
 
-void ies_bounds(IesLight r, out vec3 lo, out vec3 hi) { lo = hi = r.placement.world_from_local[3]; }
+void ies_bounds(IesLight r, out vec3 lo, out vec3 hi) {
+    lo = hi = r.placement.world_from_local[3];
+    if (ies_is_point(r)) return;
+    mat3 f = ies_frame(r);
+    vec3 extent = 0.5 * (abs(f[0]) * r.file.size.x + abs(f[1]) * r.file.size.y + abs(f[2]) * r.file.size.z);
+    lo -= extent, hi += extent;
+}
 
-LightCone ies_cone(IesLight r) { return LightCone(-normalize(r.placement.world_from_local[2]), r.file.cos_lit, 1.0); }
+LightCone ies_cone(IesLight r) { return LightCone(-normalize(r.placement.world_from_local[2]), r.file.cos_lit, 0.99); }

@@ -2,6 +2,7 @@
 #include <functional>
 
 #include "tests/cli/program.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -38,6 +39,14 @@ std::string with_class_file() {
     return scene.replace(scene.rfind(before), before.size(),
                          R"("extensions": {"ETD_optics": {"class_files": [{"interface": "surface", "file":
 "evil.glsl"}], "environment")");
+}
+
+// A lamp over a meter.
+std::string lamp_scene(const std::string& lamp) {
+    return R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "nodes": [
+{"name": "lamp", "translation": [0, 0, 3], "extensions": {"ETD_optics": {"light": )" +
+           lamp + R"(}}}, {"name": "floor", "extensions": {"ETD_optics": {"receiver":
+{"class": "illuminance", "size": [1, 1], "resolution": [4, 4]}}}}], "scenes": [{"nodes": [0, 1]}], "scene": 0})";
 }
 
 // out.exr is there before each of these runs, and must be untouched after it.
@@ -167,6 +176,25 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          [](Executable& p) {
              write_text(p.folder / "gold.pbsdf", std::string("tensor_file\0\1\0\0\0\0\0", 18));
          }},
+        {"a photometric file that ends too early",
+         render,
+         2,
+         {"lamp.ies", "line 8", "ends before intensity 3 of 5"},
+         lamp_scene(R"({"class": "ies", "file": "lamp.ies"})"),
+         [](Executable& p) {
+             write_text(p.folder / "lamp.ies",
+                        read_text(source_path("tests/host/photometry/own_bad_truncated.ies")));
+         }},
+        {"a photometric file of an unknown kind",
+         render,
+         2,
+         {"s.gltf", "allowed: .ies, .ldt"},
+         lamp_scene(R"({"class": "ies", "file": "s.gltf"})")},
+        {"a lamp without its photometric file",
+         render,
+         2,
+         {"s.gltf", "/nodes/0", "needs the parameter file"},
+         lamp_scene(R"({"class": "ies"})")},
         {"a class file that nobody allowed",
          render,
          2,

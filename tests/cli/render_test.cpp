@@ -170,6 +170,26 @@ TEST_CASE("compare ends with 1 beyond its limit") {
     CHECK(sizes.error_lines() == 1);
 }
 
+TEST_CASE("inspect tells flux, peak and opening of a photometric file, and what was corrected") {
+    Executable program;
+    write_text(program.folder / "lamp.ies",
+               "IES:LM-63-2019\nTILT=NONE\n1 500 1 2 4 1 2 -0.2 -0.2 0\n1 1 9\n0 180\n0 90 180 270\n1 1 1 1 "
+               "1 1 1 1\n");
+    write_text(program.folder / "s.gltf",
+               R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "nodes": [
+{"extensions": {"ETD_optics": {"light": {"class": "ies", "file": "lamp.ies"}}}}, {"extensions": {"ETD_optics": {"receiver":
+{"class": "illuminance", "size": [1, 1]}}}}], "scenes": [{"nodes": [0, 1]}], "scene": 0})");
+    const Run inspect = program.run({"inspect", "s.gltf"});
+    CAPTURE(inspect.err);
+    CHECK(inspect.code == 0);
+    for (const char* said : {"lamp.ies: 12.5664 lm, peak 1 cd, opening disk of diameter 0.2 m",
+                             "lights     1 (0 at infinity), 12.5664 lm"})
+        CHECK_MESSAGE(inspect.out.find(said) != std::string::npos, inspect.out);
+    for (const char* said :
+         {"lamp.ies: the horizontal angles end at 270°", "12.5664 lm, its lamps have 500 lm"})
+        CHECK(inspect.err.find(said) != std::string::npos);
+}
+
 TEST_CASE("inspect, classes and devices tell what there is") {
     Executable program;
     write_text(program.folder / "s.gltf", small_scene());

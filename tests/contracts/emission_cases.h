@@ -17,6 +17,7 @@ struct EmissionCase {
     SceneDescription scene;
     double power_tolerance = 1e-5;  // relative, of what the light states
     MeasuringDisk disk{{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f};
+    float extent = 0;  // m, of what rays of a light with a position leave, from there
 };
 
 // Two specks at opposite corners make the scene a sphere of radius sqrt(3) around the origin.
@@ -128,26 +129,25 @@ inline std::string environment_file() {
     return path.string();
 }
 
-// Uneven steps, dark parts, a bright corner; light up and down, sharp ends.
-inline std::string wild_lamp(IntensityDistribution::Type type) {
+// Uneven steps, dark parts, a bright corner; of type C light up and down.
+inline std::string wild_lamp(IntensityDistribution::Type type, const std::string& opening = "0 0 0") {
     static const TemporaryFolder folder;
     const bool is_c = type == IntensityDistribution::Type::c;
     const std::vector<double> v = is_c ? std::vector<double>{0, 4, 10, 35, 90, 91, 150, 180}
                                        : std::vector<double>{-90, -60, -20, 5, 10, 50, 90},
                               h = is_c ? std::vector<double>{0, 20, 90, 100, 200, 310, 360}
                                        : std::vector<double>{-90, -30, -25, 0, 60, 90};
-    std::string text = fmt::format("IES:LM-63-2019\nTILT=NONE\n1 -1 1 {} {} {} 2 0 0 0\n1 1 0\n{}\n{}\n",
-                                   v.size(), h.size(), 1 + int(type), fmt::join(v, " "), fmt::join(h, " "));
+    std::string text =
+        fmt::format("IES:LM-63-2019\nTILT=NONE\n1 -1 1 {} {} {} 2 {}\n1 1 0\n{}\n{}\n", v.size(), h.size(),
+                    1 + int(type), opening, fmt::join(v, " "), fmt::join(h, " "));
     for (size_t i = 0; i < h.size(); ++i)
         for (size_t j = 0; j < v.size(); ++j) {
             const bool at_end = !is_c && (i == 0 || j == 0 || i + 1 == h.size() || j + 1 == v.size());
-            const bool dark = at_end || (is_c && (j == 5 || j == 6));
-            text +=
-                fmt::format("{}\n", dark               ? 0
-                                    : j == 2 && i == 2 ? 90
-                                                       : (is_c && i + 1 == h.size() ? j : 7 * i + j) % 5 * 3);
+            const bool is_dark = at_end || (is_c && (j == 5 || j == 6));
+            const size_t value = (is_c && i + 1 == h.size() ? j : 7 * i + j) % 5 * 3;
+            text += fmt::format("{}\n", is_dark ? 0 : j == 2 && i == 2 ? 90 : value);
         }
-    const auto file = folder / fmt::format("{}.ies", int(type));
+    const auto file = folder / fmt::format("{} {}.ies", int(type), opening);
     write_text(file, text);
     return file.string();
 }
@@ -185,9 +185,27 @@ inline std::vector<EmissionCase> emission_cases() {
         {"ies", "type A",
          light_scene("ies",
                      {{"file", wild_lamp(IntensityDistribution::Type::a)}, {"color", {1, 0.5, 0.25}}})},
+        {"ies",
+         "rectangle",
+         light_scene("ies", {{"file", wild_lamp(IntensityDistribution::Type::c, "0.3 0.2 0")}, {"turn", 1}}),
+         1e-5,
+         {{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f},
+         0.19f},
+        {"ies",
+         "tube",
+         light_scene("ies", {{"file", wild_lamp(IntensityDistribution::Type::b, "-0.1 0.5 -0.1")}}),
+         1e-5,
+         {{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f},
+         0.26f},
+        {"ies",
+         "ball",
+         light_scene("ies", {{"file", wild_lamp(IntensityDistribution::Type::a, "-0.4 -0.4 -0.4")}}),
+         1e-5,
+         {{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f},
+         0.21f},
         {"ies", "axial",
-         light_scene("ies",
-                     {{"file", source_path("tests/host/photometry/own_lambert_1986_commas_feet.ies")}})},
+         light_scene("ies", {{"file", source_path("tests/host/photometry/own_lambert_1986_commas_feet.ies")},
+                             {"point", true}})},
         {"directional", "", light_scene("directional", {{"intensity", 5}})},
         {"constant", "", environment_scene("constant", {{"radiance", {1, 2, 3}}})},
         {"image", "", environment_scene("image", {{"file", environment_file()}, {"rotation", 1}}), 1e-4},

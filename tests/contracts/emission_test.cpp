@@ -159,7 +159,8 @@ TEST_CASE("emission: rays start on the light and leave it, or outside the scene"
             worst_length = std::max({worst_length, std::abs(glm::length(glm::dvec3(r.direction)) - 1),
                                      std::abs(glm::length(glm::dvec3(r.normal)) - 1)});
             back += !(glm::dot(r.normal, r.direction) >= 0) || (p.has_surface() && r.t_hit < 1e-3f);
-            if (p.has_position()) wrong_start += r.origin != glm::vec3(0, 0, 0.5f);
+            if (p.has_position())
+                wrong_start += !(glm::length(r.origin - glm::vec3(0, 0, 0.5f)) <= p.c.extent);
             if (!p.has_position() && !p.has_surface())
                 wrong_start += !(glm::length(r.origin) > p.probe->scene().radius);
             if (!p.has_surface()) wrong_start += r.normal != r.direction || r.error != glm::vec3(0);
@@ -202,7 +203,7 @@ TEST_CASE("emission: a ray has the same density and radiance where it starts, is
                 ++across;
             else
                 worst_sampled = std::max(worst_sampled, apart);
-            if (r.is_delta)
+            if (r.is_delta && p.c.extent == 0)
                 worst_delta =
                     std::max(worst_delta, std::abs(r.sampled_emission_pdf - double(r.pdf)) / largest);
         }

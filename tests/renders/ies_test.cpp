@@ -9,6 +9,7 @@
 #include "tests/renders/agreement_scenes.h"
 #include "tests/renders/algorithm_comparison.h"
 #include "tests/support/source_path.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 using nlohmann::json;
@@ -65,7 +66,7 @@ TEST_CASE("a photometric lamp lights a floor as its file says, in every algorith
                                            {"own_asym_0_360.ies", {{"turn", 0.8}, {"scale", 2}}, 0.8, 2},
                                            {"own_isym4_asym.ldt", {{"flux", 1998.7298}}, 0, 2},
                                            {"own_lambert_type_b_quarter.ies", json::object(), 0, 1}}) {
-        INFO(c.file, " ", c.parameters.dump());
+        INFO(std::string(c.file), " ", c.parameters.dump());
         const IntensityDistribution d = read_photometric_file(file_of(c.file));
         const glm::dvec3 place(0.3, 2.5, -0.2);
         // -z looks down: x stays, y lies towards -z.
@@ -75,7 +76,7 @@ TEST_CASE("a photometric lamp lights a floor as its file says, in every algorith
         SceneBuilder s;
         s.rectangle(20, 20, s.lambertian(0), {{0, 0, 0}, {-h, 0, 0, h}});
         json lamp = c.parameters;
-        lamp["class"] = "ies", lamp["file"] = file_of(c.file);
+        lamp["class"] = "ies", lamp["file"] = file_of(c.file), lamp["point"] = true;
         s.placed("light", lamp, {{place.x, place.y, place.z}, {-h, 0, 0, h}});
         const std::vector<glm::dvec2> spots = {{0.3, -0.2}, {1.5, -0.2}, {0.3, -2}, {-2, 1.5}, {1, 2}};
         for (size_t i = 0; i < spots.size(); ++i)
@@ -118,7 +119,7 @@ TEST_CASE("far away a photometric lamp has the intensities of its file") {
                     const double weight = std::sin(gamma * std::numbers::pi / 180);
                     sum += weight * d.intensity(c, gamma), weights += weight;
                 }
-            const WindowMean seen = window_mean(e, {column, row, column + 1, row + 1});
+            const WindowMean seen = window_mean(e, {column, row, 1, 1});
             CAPTURE(column);
             CAPTURE(row);
             CAPTURE(seen.mean);
@@ -130,13 +131,13 @@ TEST_CASE("far away a photometric lamp has the intensities of its file") {
 TEST_CASE("a room lit by a photometric lamp: all algorithms agree") {
     SceneBuilder s;
     add_room(s);
-    s.medium("glass", {{"ior", 1.5}});
-    s.sphere(0.4, s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}),
-             at(-0.5, -1.2, 0.2));
+    s.sphere(0.4, s.surface({{"class", "conductor"}, {"alpha", 0.3}}), at(-0.5, -1.2, 0.2));
     s.placed(
         "light",
         {{"class", "ies"}, {"file", file_of("own_asym_0_360.ies")}, {"turn", 1.0}, {"color", {1, 0.8, 0.5}}},
         {{0, 1.5, 0}, {-h, 0, 0, h}});
+    s.placed("light", {{"class", "ies"}, {"file", file_of("own_lambert_type_b.ies")}, {"scale", 0.3}},
+             {{-1, 1, -1}, {-h, 0, 0, h}});
     s.placed("receiver", {{"class", "illuminance"}, {"size", {1.6, 1.2}}, {"resolution", {32, 24}}},
              {{0, -2, 0}, {-h, 0, 0, h}});
     s.document["nodes"].back()["name"] = "floor";
@@ -144,4 +145,46 @@ TEST_CASE("a room lit by a photometric lamp: all algorithms agree") {
     check_against_backward(
         scene,
         {.backward = 128, .forward = 32, .bidirectional = 16, .largest_error = 0.02, .receiver = "floor"});
+}
+
+// Close to it, a panel of 1 x 0.5 m with intensities of I cos gamma is a rectangle of even luminance I / A.
+TEST_CASE("the luminous opening of a photometric lamp is where its light comes from") {
+    const TemporaryFolder folder;
+    const auto lamp = [&](const char* file, const char* sizes) {
+        std::string text = read_text(file_of("own_lambert_iesna91_one_per_line.ies"));
+        const size_t at = text.find("0.0 0.0 0.0");
+        REQUIRE(at != std::string::npos);
+        write_text(folder / file, text.replace(at, 11, sizes));
+        return (folder / file).string();
+    };
+    const std::string panel = lamp("panel.ies", "0.5 1 0"), disk = lamp("disk.ies", "-2 0 0");
+    const auto check = [&](const json& light, double distance, double x, double expected) {
+        INFO(light.dump());
+        SceneBuilder s;
+        s.rectangle(20, 20, s.lambertian(0), {{0, 0, 0}, {-h, 0, 0, h}});
+        s.placed("light", light, {{0, distance, 0}, {-h, 0, 0, h}});
+        add_floor_meter(s, "floor", x, 0, 1e-3);
+        Scene scene = compile_test_scene(s.import());
+        for (const Algorithm algorithm : {Algorithm::backward, Algorithm::bidirectional}) {
+            const WindowMean seen = measured(scene, "floor", algorithm, 1024);
+            CAPTURE(algorithm_name(algorithm));
+            CAPTURE(expected);
+            CAPTURE(seen.mean);
+            CHECK(std::fabs(seen.mean - expected) <
+                  4 * seen.standard_error + 2e-3 * expected);  // steps of 5 degrees
+            CHECK(seen.standard_error < 0.01 * expected);
+        }
+    };
+    // Rectangle of 1 m along x and 0.5 m, seen from below its centre: four configuration factors of corners.
+    const auto corner = [](double a, double b) {
+        const double u = std::sqrt(1 + a * a), v = std::sqrt(1 + b * b);
+        return (a / u * std::atan(b / u) + b / v * std::atan(a / v)) / (2 * std::numbers::pi);
+    };
+    const double distance = 0.4;
+    check({{"class", "ies"}, {"file", panel}}, distance, 0,
+          4 * corner(0.5 / distance, 0.25 / distance) * std::numbers::pi * 1000 / 0.5);
+    check({{"class", "ies"}, {"file", panel}, {"point", true}}, distance, 0, 1000 / (distance * distance));
+    // A disk of radius 1 m, 1000 cd: 1000 / pi cd/m²; 2 m below its centre and 1 m aside.
+    check({{"class", "ies"}, {"file", disk}}, 2, 0, 628.3185 / std::numbers::pi);
+    check({{"class", "ies"}, {"file", disk}}, 2, 1, 460.0756 / std::numbers::pi);
 }

@@ -47,6 +47,7 @@ const char* const text = R"(
         EmittedRay e = light_emit(lights[light], scene_bounds(), random(i, 1u), random(i, 2u));
         ProbedRay r = ProbedRay(e.origin, e.pdf, e.direction, INFINITY, e.radiance, uint(e.is_delta), e.normal, -1.0,
                                 e.error, 0.0, -1.0, -1.0);
+        has_surface = has_surface && !e.is_delta;  // or what light leaves is nothing that rays meet
         vec3 origin = offset_origin(e.origin, e.error, e.normal, e.direction), direction = e.direction, otherwise = e.origin;
         LightSample l = no_light_sample();
         for (uint k = 0u; k < rays; k++) {
