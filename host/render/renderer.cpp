@@ -128,8 +128,13 @@ Schedule choose_schedule(Device& device, Scene& scene, Techniques& techniques) {
         const std::string defines = techniques.backward_defines();
         if (fits("kernels/trace_paths.comp", defines)) return Schedule::fused;
         if (fits(scatter, defines)) return Schedule::wavefront;
-        for (const std::string& of_class : Wavefront::defines_by_class(scene, defines))
-            techniques.connect = techniques.connect && fits(scatter, of_class);
+        const auto all_fit = [&] {
+            const auto by_class = Wavefront::defines_by_class(scene, techniques.backward_defines());
+            return std::all_of(by_class.begin(), by_class.end(),
+                               [&](const std::string& of_class) { return fits(scatter, of_class); });
+        };
+        techniques.connect = techniques.connect && all_fit();
+        techniques.beams = techniques.beams && (techniques.connect || all_fit());
         return Schedule::by_class;
     }
     if (scene.features.bending) return Schedule::fused;
@@ -161,6 +166,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     Techniques techniques = choose_techniques(device, scene, settings_.algorithm);
     techniques.stokes = settings_.stokes;
     techniques.connect &= settings_.connect;
+    techniques.beams &= settings_.beams;
     film_ = std::make_unique<Film>(
         device, scene, FilmShape{settings.width, settings.height, techniques.merge, settings_.stokes},
         timings_);
@@ -176,6 +182,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     if (schedule_ == Schedule::automatic)
         schedule_ = settings_.schedule = choose_schedule(device, scene, techniques);
     settings_.connect = techniques.connect;
+    settings_.beams = techniques.beams;
     start_media_ = std::make_unique<StartMedia>(device, scene, techniques.forward);
     start_media_->find(settings.receiver, film_aspect());
     film["StartMedia"] = &start_media_->buffer();

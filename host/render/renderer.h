@@ -44,6 +44,7 @@ struct RenderSettings {
     Algorithm algorithm = Algorithm::automatic;
     Schedule schedule = Schedule::automatic;
     bool connect = true;                    // bidirectional: vertices are connected, beside all else
+    bool beams = true;                      // bidirectional: rays in thin media merge along their way
     double forward_paths = 1;               // a pixel and pass, where there are any
     std::optional<AlgorithmChoice> choice;  // of an earlier run: taken instead of algorithm and forward_paths
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
@@ -91,7 +92,8 @@ constexpr uint64_t most_backward_kernel_bytes = 224 << 10, most_kernel_bytes = 2
                    most_polarized_kernel_bytes = 336 << 10;
 
 // What `techniques` are run by on the device. Where not even a kernel for each class would be within the
-// budget, because it knows the classes at both ends of connections, vertices are no longer connected.
+// budget, because it knows the classes at both ends of connections, vertices are no longer connected; where
+// that is not enough either, rays in media merge at points, no longer along their way.
 struct Techniques;
 Schedule choose_schedule(Device& device, Scene& scene, Techniques& techniques);
 

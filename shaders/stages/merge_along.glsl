@@ -49,7 +49,13 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
         float t = dot(d, path.direction);
         vec3 aside = d - t * path.direction;
         float radius = merge_radius(y.position);
-        Passage passage = passage_along(path, t);
+        // To where all vertices are asked for, if this one is beyond, and to it: a loop, so that the code of media stands once.
+        Passage passage;
+        Spectrum waited = Spectrum(1);
+        [[dont_unroll]] for (uint k = t > sure ? 0u : 1u; k < 2u; ++k) {
+            passage = passage_along(path, k == 0u ? t - sure : t);
+            if (k == 0u) waited = passage.transmittance;
+        }
         ScatteringPoint s = volume_scattering_point(y.position, path.direction, path.around, false);
         Spectrum value = phase_value(s.phase, dot(decode_octahedral(y.direction), path.direction));
         float pdf = lane_mean(value);
@@ -60,7 +66,7 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
         if (!(mis.merging > 0.0)) continue;
         float others = connects(path) * mis.vcm + pdf * mis.vc + CONNECTION_SHARE * y.vcm + pdf * y.vc;
         float weight = mis.merging / (mis.merging + others);
-        if (t > sure) weight /= max(dot(share, passage_along(path, t - sure).transmittance), 1e-30);
+        if (t > sure) weight /= max(dot(share, waited), 1e-30);
         Spectrum brought = passage.transmittance * y.throughput * value * (weight / (PI * square(radius)));
         Received light =
             merged_light(brought, path, s, phase_mueller(s.phase, decode_octahedral(y.direction) * s.frame, s.wo), y);
