@@ -9,6 +9,8 @@
 #include "host/gnuplot.h"
 #include "host/image/atomic_file.h"
 #include "host/image/exr.h"
+#include "host/photometry/ies_file.h"
+#include "host/photometry/ldt_file.h"
 #include "host/spectra/color.h"
 
 namespace etendue {
@@ -98,6 +100,23 @@ double relative_error(const Measurement& measurement, bool worst) {
     return error;
 }
 
+IntensityDistribution intensity_distribution(const Readings& readings) {
+    const Meter& meter = readings.meter;
+    const auto values = luminous_values(readings);
+    IntensityDistribution d;
+    for (uint32_t row = 0; row < meter.rows; ++row) d.angles.push_back(gamma_angle(meter, row));
+    for (uint32_t column = 0; column <= meter.columns; ++column) {
+        d.planes.push_back(c_angle(meter, column));
+        for (uint32_t row = 0; row < meter.rows; ++row) {
+            double sum = 0;
+            for (const auto& replicate : values)
+                sum += replicate[size_t(row) * meter.columns + column % meter.columns];
+            d.candela.push_back(sum / replicates);
+        }
+    }
+    return d;
+}
+
 std::vector<std::string> file_names(const Measurement& measurement) {
     std::vector<std::string> names;
     for (const Readings& readings : measurement.meters) {
@@ -130,6 +149,12 @@ std::vector<std::string> write_report(const ReportOptions& options, const Measur
         image.attributes["algorithm"] = std::string(algorithm_name(readings.choice.algorithm));
         outputs.write([&] { write_exr(stem.string() + ".exr", image); });
         outputs.write([&] { write_atomically(stem.string() + ".csv", pixel_table(readings, image)); });
+        if (readings.meter.is_far) {
+            const IntensityDistribution d = intensity_distribution(readings);
+            const PhotometricLabels labels{"", readings.meter.name, "", "etendue " ETENDUE_VERSION, ""};
+            outputs.write([&] { write_ies(stem.string() + ".ies", d, labels); });
+            outputs.write([&] { write_ldt(stem.string() + ".ldt", d, labels); });
+        }
         for (const char* plot : {".map.png", ".sections.svg", ".polar.svg"}) fs::remove(stem.string() + plot);
         if (!is_dark(readings)) script += plots_of(readings, stem);
     }

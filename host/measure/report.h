@@ -2,6 +2,7 @@
 //   index.html               a page of its own: figures, maps, sections, polar diagrams, the balance of power
 //   figures.csv              every figure of every meter, with its interval
 //   METER.exr, METER.csv     each pixel and its standard error
+//   METER.ies, METER.ldt     of intensities, as lamps are published (LM-63-2019, EULUMDAT)
 //   METER.map.png            in false colours with isolines
 //   METER.sections.svg       through the middle, with the 95 % interval; of intensities METER.polar.svg
 #pragma once
@@ -11,6 +12,7 @@
 #include "host/image/outputs.h"
 #include "host/measure/figures.h"
 #include "host/measure/measurement.h"
+#include "host/photometry/intensity_distribution.h"
 #include "host/table.h"
 
 namespace etendue {
@@ -38,6 +40,10 @@ double relative_error(const Measurement& measurement, bool worst);
 
 // Names of the meters in files, each once.
 std::vector<std::string> file_names(const Measurement& measurement);
+
+// What an intensity meter has read, as photometric files hold it: the mean over each pixel's solid angle
+// stands for its direction.
+IntensityDistribution intensity_distribution(const Readings& readings);
 
 // What gnuplot is to draw of a meter; the files' names begin with `stem`.
 std::string plots_of(const Readings& readings, const std::filesystem::path& stem);

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "host/image/exr.h"
+#include "host/photometry/intensity_distribution.h"
 #include "tests/cli/program.h"
 
 using namespace etendue;
@@ -43,6 +44,12 @@ TEST_CASE("a report has the figures, images, tables and a page of every meter") 
     const Image image = read_exr(program.folder / "out/plane.exr");
     CHECK(std::get<std::string>(image.attributes.at("pixelUnit")) == "lx");
     CHECK(find_channel(image, "error.R") >= 0);
+    for (const char* file : {"out/gonio.ies", "out/gonio.ldt"}) {
+        CAPTURE(file);
+        const IntensityDistribution d = read_photometric_file(program.folder / file);
+        CHECK(d.flux() == doctest::Approx(4000 * 3.14159265).epsilon(0.05));
+        CHECK(d.intensity(100, 90) == doctest::Approx(1000).epsilon(0.1));
+    }
     // A later run may take the folder; other folders are let alone.
     CHECK(program.run({"measure", "s.gltf", "-o", "out", "--passes", "16", "-q"}).code == 0);
     std::filesystem::create_directory(program.folder / "mine");
