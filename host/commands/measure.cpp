@@ -109,7 +109,8 @@ int measure_command(const MeasureOptions& options) {
         status.rays = double(run.rays() - rays_before);
         status.error = relative_error(measurement, options.worst);
         if (2 * took < batch_seconds) batch *= 2;
-        const bool is_known = status.passes >= 2 * replicates && *status.error > 0;
+        // An error of 0: no noise, or no light so far.
+        const bool is_known = status.passes >= (*status.error > 0 ? 2 : 64) * replicates;
         done = (options.passes && left() == 0) || (options.seconds && status.seconds >= *options.seconds) ||
                (options.error && is_known && *status.error <= *options.error);
         if (!options.checkpoint.empty() && status.seconds >= next_checkpoint) {
@@ -125,6 +126,17 @@ int measure_command(const MeasureOptions& options) {
     }
     finish_progress(progress, status);
     measurement.seconds = seconds_before + seconds_since(start);
+
+    if (measurement.passes.count() > 0 && !interrupted())
+        for (const std::string& name : run.probe_dark_meters())
+            show_note(progress,
+                      fmt::format("warning: {}: forward rays bring light that backward rays miss: use "
+                                  "--algorithm bidirectional",
+                                  name));
+    for (const Readings& readings : measurement.meters)
+        if (measurement.passes.count() > 0 && is_dark(readings))
+            show_note(progress,
+                      fmt::format("{}: {}", readings.meter.name, darkness_text(readings, measurement.power)));
 
     Outputs outputs;
     if (!options.output.empty() && measurement.passes.count() > 0) {

@@ -38,6 +38,7 @@ void keep(const Measurement& measurement, Checkpoint& checkpoint) {
                           {"is_far", readings.meter.is_far},
                           {"has_extent", readings.meter.has_extent},
                           {"counters", to_json(readings.counters)},
+                          {"probing_paths", readings.probing_paths},
                           {"choice", to_json(readings.choice)}});
         add_array(checkpoint, array_name(m, "sums"), readings.sums);
         add_array(checkpoint, array_name(m, "places"), readings.meter.places);
@@ -101,6 +102,7 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
         readings.sums =
             array_of<ExactSum>(checkpoint, path, array_name(m, "sums"), meter.pixels() * replicates);
         readings.counters = counters_from_json(json.at("counters"));
+        readings.probing_paths = json.at("probing_paths");
         readings.choice = choice_from_json(json.at("choice"));
         readings.passes = checkpoint.passes.count() / replicates;
     }
@@ -114,6 +116,7 @@ void add(Measurement& all, const Measurement& part) {
         Readings& readings = all.meters[m];
         merge(std::span(readings.sums), std::span<const ExactSum>(part.meters[m].sums));
         add(readings.counters, part.meters[m].counters);
+        readings.probing_paths = std::max(readings.probing_paths, part.meters[m].probing_paths);
         readings.passes = all.passes.count() / replicates;
     }
 }

@@ -274,8 +274,17 @@ bool is_dark(const Readings& readings) {
 }
 
 std::optional<double> missed_flux(const Readings& readings, double power) {
-    if (readings.counters.forward_paths == 0 || !is_dark(readings)) return {};
-    return 3 * power / double(readings.counters.forward_paths);
+    const uint64_t paths = readings.counters.forward_paths + readings.probing_paths;
+    if (paths == 0 || !is_dark(readings)) return {};
+    return 3 * power / double(paths);
+}
+
+std::string darkness_text(const Readings& readings, double power) {
+    const auto missed = missed_flux(readings, power);
+    return missed ? fmt::format("no light has arrived: with 95 % confidence its flux is below {:.3g} lm",
+                                *missed)
+                  : std::string(
+                        "no light has arrived by backward rays; how much they may miss they do not tell");
 }
 
 }  // namespace etendue

@@ -58,6 +58,7 @@ double relative_error_of_worst(const Readings& readings);
 // paths from the lights none came, so at most 3 / n of their flux does (rule of three; Hanley & Lippman-Hand
 // 1983). Nothing where light has arrived, or no paths started at lights.
 std::optional<double> missed_flux(const Readings& readings, double power);
+std::string darkness_text(const Readings& readings, double power);  // a sentence that says both
 bool is_dark(const Readings& readings);
 
 }  // namespace etendue

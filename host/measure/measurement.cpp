@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "host/measure/figures.h"
 #include "host/render/automatic.h"
 
 namespace etendue {
@@ -10,6 +11,8 @@ namespace {
 
 // Fewer leave the device idle.
 constexpr double least_forward_paths = 1 << 14;  // a pass
+// That none of which arrives says: less than 3 in a million do.
+constexpr double probing_paths = 1 << 20;
 
 // Seeds of replicates, and of neighbouring seeds, have nothing in common (finalizer of MurmurHash3).
 uint32_t seed_of(uint32_t seed, uint32_t replicate) {
@@ -41,7 +44,7 @@ AlgorithmChoice choose_for_meter(Device& device, Scene& scene, const Receiver& r
 
 MeasurementRun::MeasurementRun(Device& device, Scene& scene, const std::vector<const Receiver*>& receivers,
                                const RenderSettings& common)
-    : scene_(scene), seed_(common.seed) {
+    : device_(device), scene_(scene), settings_(common) {
     measurement_.power = scene.power;
     for (const Receiver* receiver : receivers) {
         RenderSettings settings = common;
@@ -72,7 +75,7 @@ bool MeasurementRun::add(const PassRange& range, const std::function<bool()>& in
         for (uint32_t k = 0; k < replicates; ++k) {
             if (interrupt()) return false;
             Renderer& renderer = *renderers_[m];
-            renderer.restart(seed_of(seed_, k), views_[m]);
+            renderer.restart(seed_of(settings_.seed, k), views_[m]);
             renderer.begin_at(first);
             renderer.render_passes(uint32_t(count));
             const FilmState film = renderer.state();
@@ -93,6 +96,28 @@ bool MeasurementRun::add(const PassRange& range, const std::function<bool()>& in
     }
     measurement_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return true;
+}
+
+std::vector<std::string> MeasurementRun::probe_dark_meters() {
+    std::vector<std::string> reached;
+    for (size_t m = 0; m < views_.size(); ++m) {
+        Readings& readings = measurement_.meters[m];
+        if (!is_dark(readings) || readings.counters.forward_paths > 0 || !(scene_.power > 0)) continue;
+        RenderSettings settings = settings_;
+        settings.algorithm = Algorithm::forward;
+        settings.receiver = views_[m].receiver;
+        settings.width = views_[m].width, settings.height = views_[m].height;
+        settings.forward_paths = std::max(1.0, probing_paths / double(readings.meter.pixels()));
+        Renderer renderer(device_, scene_, settings);
+        renderer.render_passes(1);
+        const Image image = renderer.develop(false);
+        const auto is_lit = [](float x) { return x != 0; };
+        if (std::any_of(image.values.begin(), image.values.end(), is_lit))
+            reached.push_back(readings.meter.name);
+        else
+            readings.probing_paths = renderer.counters().forward_paths;
+    }
+    return reached;
 }
 
 uint64_t MeasurementRun::rays() const {

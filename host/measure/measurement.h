@@ -31,14 +31,19 @@ class MeasurementRun {
     // nothing was added.
     bool add(const PassRange& range, const std::function<bool()>& interrupt);
 
+    // Where meters are dark that backward rays alone have read: whether forward rays reach them, and how many
+    // did not (Readings::probing_paths). Returns the names of those that they do reach.
+    std::vector<std::string> probe_dark_meters();
+
     const Measurement& measurement() const { return measurement_; }
     Measurement& measurement() { return measurement_; }
     uint64_t rays() const;
     const std::vector<std::unique_ptr<Renderer>>& renderers() const { return renderers_; }
 
   private:
+    Device& device_;
     Scene& scene_;
-    uint32_t seed_;
+    RenderSettings settings_;  // that all meters have in common
     std::vector<FilmView> views_;
     std::vector<std::unique_ptr<Renderer>> renderers_;
     Measurement measurement_;

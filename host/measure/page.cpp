@@ -53,13 +53,9 @@ std::string meter_section(const ReportOptions& options, const Measurement& measu
         "<h2>{}</h2>\n<p>{} × {} pixels, {}; {}: {}.</p>\n", escaped(meter.name), meter.columns, meter.rows,
         meter.unit, algorithm_name(readings.choice.algorithm), escaped(readings.choice.reason));
     html += as_html(figure_table(readings, figures_of(readings, options.points)));
-    if (is_dark(readings)) {
-        const auto missed = missed_flux(readings, measurement.power);
-        html += fmt::format(
-            "<p class=\"note\">No light has arrived{}.</p>\n",
-            missed ? fmt::format(": with 95 % confidence its flux is below {:.3g} lm", *missed)
-                   : std::string(" by backward rays; how much they may have missed they do not tell"));
-    }
+    if (is_dark(readings))
+        html +=
+            fmt::format("<p class=\"note\">{}</p>\n", escaped(darkness_text(readings, measurement.power)));
     const fs::path stem = options.folder / name;
     if (const fs::path map = stem.string() + ".map.png"; fs::exists(map))
         html += fmt::format(

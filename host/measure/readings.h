@@ -46,6 +46,7 @@ struct Readings {
     uint64_t passes = 0;         // of each replicate
     RenderCounters counters;
     AlgorithmChoice choice;
+    uint64_t probing_paths = 0;  // from the lights, traced for no other end than to see whether any arrives
 };
 
 using PixelMeans = std::vector<glm::dvec3>;  // linear Rec.709; (1, 1, 1) is one of the meter's units
