@@ -59,6 +59,10 @@ const Receiver& choose_receiver(const Scene& scene, const SceneChoice& choice) {
                names);
 }
 
+std::string receiver_unit(const Receiver& receiver) {
+    return receiver.info->pixel_unit.empty() ? "cd/m²" : receiver.info->pixel_unit;
+}
+
 ImageSize image_size(const Receiver& receiver, const SceneChoice& choice) {
     if (receiver.columns > 0) {
         if (choice.size)

@@ -27,6 +27,9 @@ SceneOptions scene_options(const SceneChoice& choice);
 // The receiver of that name, else the first.
 const Receiver& choose_receiver(const Scene& scene, const SceneChoice& choice);
 
+// Of its pixels: "lx", "cd"; of cameras "cd/m²".
+std::string receiver_unit(const Receiver& receiver);
+
 // As chosen, else 512 rows, and columns by the receiver's aspect ratio.
 ImageSize image_size(const Receiver& receiver, const SceneChoice& choice);
 

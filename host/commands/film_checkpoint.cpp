@@ -75,6 +75,7 @@ nlohmann::json render_identity(const nlohmann::json& sources, const RenderOption
     nlohmann::json identity = sources;
     identity.update({{"size", fmt::format("{}x{}", shape.width, shape.height)},
                      {"receiver", receiver.name},
+                     {"unit", receiver_unit(receiver)},
                      {"seed", options.seed},
                      {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
                      {"algorithm", algorithm_name(choice.algorithm)},
@@ -162,7 +163,8 @@ std::map<std::string, Attribute> image_attributes(const Checkpoint& checkpoint) 
     std::string devices;
     for (const auto& device : checkpoint.about.at("devices"))
         devices += (devices.empty() ? "" : "; ") + device.get<std::string>();
-    return {{"seed", checkpoint.identity.at("seed").get<double>()},
+    return {{"pixelUnit", checkpoint.identity.at("unit").get<std::string>()},
+            {"seed", checkpoint.identity.at("seed").get<double>()},
             {"passes", double(checkpoint.passes.count())},
             {"rays", double(all_rays(counters_from_json(checkpoint.about.at("counters"))))},
             {"seconds", checkpoint.about.at("seconds").get<double>()},

@@ -218,10 +218,9 @@ int render_command(const RenderOptions& given) {
 
     Outputs outputs;
     Image image = renderer->develop(options.aovs);
-    const std::string& unit = receiver.info->pixel_unit;  // empty: of a camera, which sees things
-    const bool sees_things = options.aovs && unit.empty();
+    const bool sees_things = options.aovs && receiver.info->pixel_unit.empty();  // a camera does
     if (sees_things) renderer->add_aovs(image, aov_samples);
-    image.attributes["pixelUnit"] = unit.empty() ? std::string("cd/m²") : unit;
+    image.attributes["pixelUnit"] = receiver_unit(receiver);
     if (options.aovs && has_stokes(image)) add_polarization(image);
     renderer->add_spectra(image);
     image.attributes.merge(std::map<std::string, Attribute>{

@@ -93,6 +93,7 @@ TEST_CASE(
     CHECK(says(run, "left out: c.etd: damaged"));
     CHECK(says(run, "passes 12:21 are missing"));
     CHECK(std::get<double>(read_exr(shared / "merged.exr").attributes.at("passes")) == 12);
+    CHECK(std::get<std::string>(read_exr(shared / "merged.exr").attributes.at("pixelUnit")) == "cd/m²");
 
     third.render("12:21", "c.etd");
     run = merge({"c.etd", "a.etd", "b.etd", "--checkpoint", "all.etd", "--stats", "stats.json"});
