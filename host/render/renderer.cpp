@@ -329,7 +329,8 @@ void Renderer::read_picture(std::vector<glm::vec3>& picture) {
     }
     film_->add_samples();
     const uint32_t pixels = settings_.width * settings_.height;
-    commands_.dispatch(develop_film_, (pixels + develop_film_.group_size() - 1) / develop_film_.group_size(),
+    const uint32_t size = develop_film_.group_size();
+    commands_.dispatch(develop_film_, std::min((pixels + size - 1) / size, max_groups),
                        {{"pixels", pixels}, {"weight", passes() ? float(1.0 / double(passes())) : 0.0f}});
     commands_.run(&timings_);
     picture.resize(pixels);

@@ -11,7 +11,6 @@ layout(push_constant) uniform Push {
 layout(scalar, set = 0) writeonly buffer Picture { vec3 picture[]; };
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= pixels) return;
-    picture[i] = (rounded(film[film_place(i, 0u, 0u)].sum) + rounded(film[film_place(i, 0u, 1u)].sum)) * weight;
+    for (uint i = gl_GlobalInvocationID.x; i < pixels; i += gl_NumWorkGroups.x * gl_WorkGroupSize.x)
+        picture[i] = (rounded(film[film_place(i, 0u, 0u)].sum) + rounded(film[film_place(i, 0u, 1u)].sum)) * weight;
 }
