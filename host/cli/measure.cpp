@@ -108,12 +108,8 @@ void finish_measure(MeasureOptions& options, const MeasureArguments& arguments, 
     finish_shared(options, arguments.shared);
     options.seed = parse_count(arguments.shared.seed, "--seed", 0, UINT32_MAX);
     options.algorithm = parse_algorithm(arguments.shared.algorithm, "--algorithm");
-    if (arguments.forward_paths) {
-        options.forward_paths = parse_positive(*arguments.forward_paths, "--forward-paths", "");
-        if (options.algorithm == Algorithm::automatic || options.algorithm == Algorithm::backward)
-            fail_input("--forward-paths: goes with --algorithm forward or bidirectional, not with {}",
-                       algorithm_name(options.algorithm));
-    }
+    if (arguments.forward_paths)
+        options.forward_paths = parse_forward_paths(*arguments.forward_paths, options.algorithm);
     options.vertex_bytes = parse_mebibytes(arguments.shared.vertex_memory, "--vertex-memory");
     if (options.output.empty() && options.checkpoint.empty())
         fail_input("measure: --output or --checkpoint says where to (see etendue measure --help)");

@@ -88,12 +88,8 @@ void finish_render(RenderOptions& options, const RenderArguments& arguments, std
             "(etendue "
             "inspect --json says what it chooses)",
             *arguments.passes);
-    if (arguments.forward_paths) {
-        options.forward_paths = parse_positive(*arguments.forward_paths, "--forward-paths", "");
-        if (options.algorithm == Algorithm::automatic || options.algorithm == Algorithm::backward)
-            fail_input("--forward-paths: goes with --algorithm forward or bidirectional, not with {}",
-                       algorithm_name(options.algorithm));
-    }
+    if (arguments.forward_paths)
+        options.forward_paths = parse_forward_paths(*arguments.forward_paths, options.algorithm);
     options.vertex_bytes = parse_mebibytes(arguments.shared.vertex_memory, "--vertex-memory");
     options.schedule = parse_schedule(arguments.shared.schedule);
     if (options.spectral_bins > 0 && options.color == ColorMode::rgb)

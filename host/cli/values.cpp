@@ -98,6 +98,14 @@ Schedule parse_schedule(const std::string& text) {
                                    {"by-class", Schedule::by_class}});
 }
 
+double parse_forward_paths(const std::string& text, Algorithm algorithm) {
+    const double paths = parse_positive(text, "--forward-paths", "");
+    if (algorithm == Algorithm::automatic || algorithm == Algorithm::backward)
+        fail_input("--forward-paths: goes with --algorithm forward or bidirectional, not with {}",
+                   algorithm_name(algorithm));
+    return paths;
+}
+
 double parse_exposure(const std::string& text) {
     const double sign = text.starts_with("-") ? -1 : 1;
     const std::string size = text.substr(text.starts_with("-") || text.starts_with("+"));

@@ -23,6 +23,8 @@ ColorMode parse_color(const std::string& text);                                 
 PolarizationMode parse_polarization(const std::string& text);
 SampleSequence parse_sampler(const std::string& text);
 Schedule parse_schedule(const std::string& text);
+// Of --forward-paths, which goes with algorithms that have them.
+double parse_forward_paths(const std::string& text, Algorithm algorithm);
 double parse_exposure(const std::string& text);
 
 template <class Choice>

@@ -36,20 +36,6 @@ std::string scene_name(const fs::path& file, const std::vector<BenchScene>& othe
     return unique;
 }
 
-// A new or an empty folder, or one of an earlier bench, whose results give way.
-void prepare_folder(const fs::path& folder) {
-    std::error_code error;
-    if (fs::exists(folder) && !fs::is_directory(folder))
-        fail_input("--output {}: is no folder", folder.string());
-    if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / "bench.csv"))
-        fail_input(
-            "--output {}: holds other files; name a new or an empty folder, or that of an earlier bench",
-            folder.string());
-    fs::create_directories(folder, error);
-    if (error) fail_input("--output {}: cannot be made: {}", folder.string(), error.message());
-    check_writable(folder / "bench.csv");
-}
-
 Reference read_reference(const BenchOptions& options) {
     Reference reference;
     reference.image = read_exr(options.reference);
@@ -180,7 +166,7 @@ int bench_command(const BenchOptions& options) {
     }
     for (const fs::path& scene : options.scenes)
         import_gltf(scene, import_options(options));  // what is wrong shows before the work
-    prepare_folder(options.output);
+    prepare_output_folder(options.output, "bench.csv", "bench");
     catch_interrupts();
     BenchResults results;
     for (const fs::path& scene : options.scenes) {

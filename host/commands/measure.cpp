@@ -49,7 +49,7 @@ std::vector<const Receiver*> choose_meters(const Scene& scene, const MeasureOpti
 }  // namespace
 
 int measure_command(const MeasureOptions& options) {
-    if (!options.output.empty()) prepare_report(options.output);
+    if (!options.output.empty()) prepare_output_folder(options.output, "figures.csv", "measurement");
     if (!options.checkpoint.empty()) check_writable(options.checkpoint);
     catch_interrupts();
     Progress progress;
@@ -145,7 +145,7 @@ int measure_command(const MeasureOptions& options) {
         if (!options.quiet)
             for (const Readings& readings : measurement.meters)
                 fmt::print("{}\n{}\n", readings.meter.name,
-                           as_text(figure_table(readings, figures_of(readings, options.points))));
+                           as_text(figure_table(figures_of(readings, options.points))));
     }
     if (!options.checkpoint.empty() && measurement.passes.count() > 0) outputs.write(save);
     outputs.finish();

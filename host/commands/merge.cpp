@@ -123,7 +123,7 @@ void write_measurement(const MergeOptions& options, Checkpoint& all, const fs::p
     told += fmt::format(": half the 95 % intervals of the means is at most {:.4g} of them", error);
     if (!options.stats.empty()) outputs.write([&] { write_stats(options, all, {error, error}); });
     if (options.output.empty()) return;
-    prepare_report(options.output);
+    prepare_output_folder(options.output, "figures.csv", "measurement");
     for (const std::string& note :
          write_report(report_options(all, options.output, options.command_line), measurement, outputs))
         if (!options.quiet) fmt::print(stderr, "{}\n", note);

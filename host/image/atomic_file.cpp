@@ -94,6 +94,18 @@ void check_writable(const fs::path& path) {
     open_beside(probe, target, path);
 }
 
+void prepare_output_folder(const fs::path& folder, const char* mark, const char* work) {
+    std::error_code error;
+    if (fs::exists(folder) && !fs::is_directory(folder))
+        fail_input("--output {}: is no folder", folder.string());
+    if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / mark))
+        fail_input("--output {}: holds other files; name a new or an empty folder, or that of an earlier {}",
+                   folder.string(), work);
+    fs::create_directories(folder, error);
+    if (error) fail_input("--output {}: cannot be made: {}", folder.string(), error.message());
+    check_writable(folder / mark);
+}
+
 void write_atomically(const fs::path& path, std::span<const std::byte> bytes) {
     write_atomically(path, std::vector{bytes});
 }

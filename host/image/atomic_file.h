@@ -13,6 +13,10 @@ namespace etendue {
 // itself, no write-protected file. To be called before the work whose result goes there. Leaves no trace.
 void check_writable(const std::filesystem::path& path);
 
+// Makes the folder of --output where there is none. Fails unless it is empty or one of an earlier `work`
+// ("bench"), whose `mark` it holds, a file that can be written.
+void prepare_output_folder(const std::filesystem::path& folder, const char* mark, const char* work);
+
 // Where `path` is no regular file (a pipe, a terminal) it is written to directly.
 void write_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_atomically(const std::filesystem::path& path, std::string_view text);

@@ -38,7 +38,6 @@ class MeasurementRun {
     const Measurement& measurement() const { return measurement_; }
     Measurement& measurement() { return measurement_; }
     uint64_t rays() const;
-    const std::vector<std::unique_ptr<Renderer>>& renderers() const { return renderers_; }
 
   private:
     Device& device_;

@@ -52,7 +52,7 @@ std::string meter_section(const ReportOptions& options, const Measurement& measu
     std::string html = fmt::format(
         "<h2>{}</h2>\n<p>{} × {} pixels, {}; {}: {}.</p>\n", escaped(meter.name), meter.columns, meter.rows,
         meter.unit, algorithm_name(readings.choice.algorithm), escaped(readings.choice.reason));
-    html += as_html(figure_table(readings, figures_of(readings, options.points)));
+    html += as_html(figure_table(figures_of(readings, options.points)));
     if (is_dark(readings))
         html +=
             fmt::format("<p class=\"note\">{}</p>\n", escaped(darkness_text(readings, measurement.power)));

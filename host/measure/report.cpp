@@ -67,21 +67,7 @@ Table all_figures(const Measurement& measurement, const std::vector<MeterPoint>&
 
 }  // namespace
 
-void prepare_report(const fs::path& folder) {
-    std::error_code error;
-    if (fs::exists(folder) && !fs::is_directory(folder))
-        fail_input("--output {}: is no folder", folder.string());
-    if (fs::exists(folder) && !fs::is_empty(folder) && !fs::exists(folder / "figures.csv"))
-        fail_input(
-            "--output {}: holds other files; name a new or an empty folder, or that of an earlier "
-            "measurement",
-            folder.string());
-    fs::create_directories(folder, error);
-    if (error) fail_input("--output {}: cannot be made: {}", folder.string(), error.message());
-    check_writable(folder / "figures.csv");
-}
-
-Table figure_table(const Readings&, const std::vector<Figure>& figures) {
+Table figure_table(const std::vector<Figure>& figures) {
     Table table = {{"figure", "value", "± 95 %", "unit", "where"}};
     for (const Figure& f : figures) {
         const double half = 0.5 * (f.interval.high - f.interval.low);

@@ -24,11 +24,8 @@ struct ReportOptions {
         attributes;  // of the images, and named on the page: scene, command, seed …
 };
 
-// A new or an empty folder, or one of an earlier measurement, whose files give way.
-void prepare_report(const std::filesystem::path& folder);
-
 // What each meter has read, for a terminal; the page has the same tables.
-Table figure_table(const Readings& readings, const std::vector<Figure>& figures);
+Table figure_table(const std::vector<Figure>& figures);
 
 // Returns lines for the user: what could not be drawn.
 std::vector<std::string> write_report(const ReportOptions& options, const Measurement& measurement,

@@ -56,21 +56,15 @@ class Numbers {
         const size_t end = std::min(line.find_first_of(separators, at_), line.size());
         const std::string_view word = std::string_view(line).substr(at_, end - at_);
         at_ = end;
-        double value;
-        if (!parse_number(word, value))
-            fail("'{}' stands for {}; must be a number", word.substr(0, 40), what);
-        return value;
+        return text_.number(line_, word, what);
     }
     double candela(double factor, const std::string& what) {
         const double value = factor * next(what);
-        if (value > max_candela) fail("{} is {:.3g} cd; must be at most {:.0e}", what, value, max_candela);
-        return value;
+        return text_.candela(line_, value, what);
     }
     size_t count(const std::string& what, size_t least, size_t most) {
         const double value = next(what);
-        if (value != std::floor(value) || value < double(least) || value > double(most))
-            fail("{} is {}; must be a whole number from {} to {}", what, value, least, most);
-        return size_t(value);
+        return text_.count(line_, value, what, least, most);
     }
     template <class... Args>
     [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {

@@ -25,21 +25,15 @@ class Fields {
     double number(const std::string& what) {
         std::string word = next(what);
         std::replace(word.begin(), word.end(), ',', '.');
-        double value;
-        if (!parse_number(word, value))
-            fail("'{}' stands for {}; must be a number", word.substr(0, 40), what);
-        return value;
+        return text_.number(line(), word, what);
     }
     double candela(double factor, const std::string& what) {
         const double value = factor * number(what);
-        if (value > max_candela) fail("{} is {:.3g} cd; must be at most {:.0e}", what, value, max_candela);
-        return value;
+        return text_.candela(line(), value, what);
     }
     size_t count(const std::string& what, size_t least, size_t most) {
         const double value = number(what);
-        if (value != std::floor(value) || value < double(least) || value > double(most))
-            fail("{} is {}; must be a whole number from {} to {}", what, value, least, most);
-        return size_t(value);
+        return text_.count(line(), value, what, least, most);
     }
     std::vector<double> angles(const char* name, size_t count, double most) {
         std::vector<double> angles;
@@ -54,10 +48,11 @@ class Fields {
     }
     template <class... Args>
     [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) const {
-        text_.fail(at_ == 0 ? 0 : at_ - 1, format, std::forward<Args>(args)...);
+        text_.fail(line(), format, std::forward<Args>(args)...);
     }
 
   private:
+    size_t line() const { return at_ == 0 ? 0 : at_ - 1; }  // of the value that came last
     const PhotometricText& text_;
     size_t at_ = 0;
 };

@@ -15,6 +15,25 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+double PhotometricText::number(size_t line, std::string_view word, const std::string& what) const {
+    double value;
+    if (!parse_number(word, value))
+        fail(line, "'{}' stands for {}; must be a number", word.substr(0, 40), what);
+    return value;
+}
+
+double PhotometricText::candela(size_t line, double value, const std::string& what) const {
+    if (value > max_candela) fail(line, "{} is {:.3g} cd; must be at most {:.0e}", what, value, max_candela);
+    return value;
+}
+
+size_t PhotometricText::count(size_t line, double value, const std::string& what, size_t least,
+                              size_t most) const {
+    if (value != std::floor(value) || value < double(least) || value > double(most))
+        fail(line, "{} is {}; must be a whole number from {} to {}", what, value, least, most);
+    return size_t(value);
+}
+
 std::string read_photometric_bytes(const std::filesystem::path& file) {
     std::error_code error;
     const auto size = std::filesystem::file_size(file, error);

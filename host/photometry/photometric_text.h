@@ -24,6 +24,10 @@ struct PhotometricText {
     [[noreturn]] void fail(size_t line, fmt::format_string<Args...> format, Args&&... args) const {
         fail_input("{}: line {}: {}", file, line + 1, fmt::format(format, std::forward<Args>(args)...));
     }
+    // What stands in that line for `what`, where it is allowed; else they fail.
+    double number(size_t line, std::string_view word, const std::string& what) const;
+    double candela(size_t line, double value, const std::string& what) const;
+    size_t count(size_t line, double value, const std::string& what, size_t least, size_t most) const;
 };
 
 std::string read_photometric_bytes(const std::filesystem::path& file);
