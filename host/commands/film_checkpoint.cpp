@@ -70,7 +70,7 @@ nlohmann::json source_hashes(const OpenedScene& opened, const SceneChoice& choic
 nlohmann::json render_identity(const nlohmann::json& sources, const RenderOptions& options,
                                const Scene& scene, const Receiver& receiver, const Renderer& renderer) {
     const AlgorithmChoice& choice = renderer.choice();
-    const FilmShape& shape = renderer.film_shape();
+    const FilmShape shape = renderer.film_shape();
     const bool forward = choice.algorithm != Algorithm::backward;
     nlohmann::json identity = sources;
     identity.update({{"size", fmt::format("{}x{}", shape.width, shape.height)},

@@ -37,14 +37,14 @@ void keep(const Measurement& measurement, Checkpoint& checkpoint) {
                           {"rows", readings.meter.rows},
                           {"is_far", readings.meter.is_far},
                           {"has_extent", readings.meter.has_extent},
-                          {"counters", to_json(readings.counters)},
-                          {"probing_paths", readings.probing_paths},
-                          {"choice", to_json(readings.choice)}});
+                          {"forward_paths", readings.forward_paths}});
         add_array(checkpoint, array_name(m, "sums"), readings.sums);
         add_array(checkpoint, array_name(m, "places"), readings.meter.places);
     }
     checkpoint.passes = measurement.passes;
     checkpoint.about["meters"] = meters;
+    checkpoint.about["counters"] = to_json(measurement.counters);
+    checkpoint.about["choice"] = to_json(measurement.choice);
     checkpoint.about["seconds"] = measurement.seconds;
     checkpoint.about["power"] = measurement.power;
 }
@@ -55,15 +55,14 @@ nlohmann::json measurement_identity(const nlohmann::json& sources, const Measure
                                     const Scene& scene, const MeasurementRun& run) {
     nlohmann::json meters = nlohmann::json::array();
     for (const Readings& readings : run.measurement().meters) {
-        const AlgorithmChoice& choice = readings.choice;
-        meters.push_back(
-            {{"name", readings.meter.name},
-             {"size", fmt::format("{}x{}", readings.meter.columns, readings.meter.rows)},
-             {"algorithm", algorithm_name(choice.algorithm)},
-             {"forward-paths", choice.algorithm == Algorithm::backward ? 0.0 : choice.forward_paths}});
+        meters.push_back({{"name", readings.meter.name},
+                          {"size", fmt::format("{}x{}", readings.meter.columns, readings.meter.rows)}});
     }
     nlohmann::json identity = sources;
+    const AlgorithmChoice& choice = run.measurement().choice;
     identity.update({{"meters", meters},
+                     {"algorithm", algorithm_name(choice.algorithm)},
+                     {"forward-paths", choice.algorithm == Algorithm::backward ? 0.0 : choice.forward_paths},
                      {"replicates", replicates},
                      {"seed", options.seed},
                      {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
@@ -91,6 +90,8 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
     measurement.passes = checkpoint.passes;
     measurement.seconds = checkpoint.about.at("seconds");
     measurement.power = checkpoint.about.at("power");
+    measurement.counters = counters_from_json(checkpoint.about.at("counters"));
+    measurement.choice = choice_from_json(checkpoint.about.at("choice"));
     for (const nlohmann::json& json : checkpoint.about.at("meters")) {
         const size_t m = measurement.meters.size();
         Readings& readings = measurement.meters.emplace_back();
@@ -101,9 +102,7 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
         meter.places = array_of<PixelPlace>(checkpoint, path, array_name(m, "places"), meter.pixels());
         readings.sums =
             array_of<ExactSum>(checkpoint, path, array_name(m, "sums"), meter.pixels() * replicates);
-        readings.counters = counters_from_json(json.at("counters"));
-        readings.probing_paths = json.at("probing_paths");
-        readings.choice = choice_from_json(json.at("choice"));
+        readings.forward_paths = json.at("forward_paths");
         readings.passes = checkpoint.passes.count() / replicates;
     }
     return measurement;
@@ -112,11 +111,11 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
 void add(Measurement& all, const Measurement& part) {
     all.passes.add(part.passes);
     all.seconds += part.seconds;
+    add(all.counters, part.counters);
     for (size_t m = 0; m < all.meters.size(); ++m) {
         Readings& readings = all.meters[m];
         merge(std::span(readings.sums), std::span<const ExactSum>(part.meters[m].sums));
-        add(readings.counters, part.meters[m].counters);
-        readings.probing_paths = std::max(readings.probing_paths, part.meters[m].probing_paths);
+        readings.forward_paths += part.meters[m].forward_paths;
         readings.passes = all.passes.count() / replicates;
     }
 }

@@ -22,23 +22,37 @@ uint32_t seed_of(uint32_t seed, uint32_t replicate) {
     return h ^ (h >> 16);
 }
 
-// What one meter reads in the passes that are being made.
-struct Addend {
-    std::vector<ExactSum> sums;
-    RenderCounters counters;
-};
+// Renders meters, as many at once as one renderer serves.
+std::vector<RenderSettings> settings_of(const RenderSettings& common, const std::vector<FilmView>& views) {
+    std::vector<RenderSettings> all;
+    for (size_t first = 0; first < views.size(); first += most_views) {
+        const size_t end = std::min(first + most_views, views.size());
+        RenderSettings& settings = all.emplace_back(common);
+        settings.receiver = views[first].receiver;
+        settings.width = views[first].width, settings.height = views[first].height;
+        settings.beside.assign(&views[first] + 1, views.data() + end);
+    }
+    for (RenderSettings& settings : all) settings.vertex_bytes = common.vertex_bytes / all.size();
+    return all;
+}
 
 }  // namespace
 
-AlgorithmChoice choose_for_meter(Device& device, Scene& scene, const Receiver& receiver) {
-    if (!receiver.info->is_far)
+AlgorithmChoice choose_for_meters(Device& device, Scene& scene,
+                                  const std::vector<const Receiver*>& receivers) {
+    bool any_far = false;
+    double pixels = 0;
+    for (const Receiver* receiver : receivers) {
+        any_far |= receiver->info->is_far;
+        pixels += double(receiver->columns) * receiver->rows;
+    }
+    if (!any_far)
         if (const auto choice = choose_without_pilot(device, scene)) return *choice;
     AlgorithmChoice choice;
     choice.algorithm = Algorithm::bidirectional;
-    const double pixels = double(receiver.columns) * receiver.rows;
     choice.forward_paths = std::max(1.0, least_forward_paths / pixels);
-    choice.reason = receiver.info->is_far ? "points and beams reach meters far away by forward rays alone"
-                                          : "backward rays alone may miss light";
+    choice.reason = any_far ? "points and beams reach meters far away by forward rays alone"
+                            : "backward rays alone may miss light";
     return choice;
 }
 
@@ -46,21 +60,18 @@ MeasurementRun::MeasurementRun(Device& device, Scene& scene, const std::vector<c
                                const RenderSettings& common)
     : device_(device), scene_(scene), settings_(common) {
     measurement_.power = scene.power;
+    if (settings_.algorithm == Algorithm::automatic)
+        settings_.choice = choose_for_meters(device, scene, receivers);
+    std::vector<FilmView> views;
     for (const Receiver* receiver : receivers) {
-        RenderSettings settings = common;
-        settings.width = receiver->columns, settings.height = receiver->rows;
-        settings.receiver = receiver->ref;
-        settings.vertex_bytes = common.vertex_bytes / receivers.size();
-        if (settings.algorithm == Algorithm::automatic)
-            settings.choice = choose_for_meter(device, scene, *receiver);
-        renderers_.push_back(std::make_unique<Renderer>(device, scene, settings));
-        views_.push_back({receiver->ref, settings.width, settings.height});
-        Readings readings;
+        views.push_back({receiver->ref, receiver->columns, receiver->rows});
+        Readings& readings = measurement_.meters.emplace_back();
         readings.meter = describe_meter(device, scene, *receiver);
         readings.sums.resize(readings.meter.pixels() * replicates);
-        readings.choice = renderers_.back()->choice();
-        measurement_.meters.push_back(std::move(readings));
     }
+    for (const RenderSettings& settings : settings_of(settings_, views))
+        renderers_.push_back(std::make_unique<Renderer>(device, scene, settings));
+    measurement_.choice = renderers_.front()->choice();
 }
 
 MeasurementRun::~MeasurementRun() = default;
@@ -68,62 +79,68 @@ MeasurementRun::~MeasurementRun() = default;
 bool MeasurementRun::add(const PassRange& range, const std::function<bool()>& interrupt) {
     const auto start = std::chrono::steady_clock::now();
     const uint64_t first = range.first / replicates, count = range.count() / replicates;
-    std::vector<Addend> addends;
-    for (size_t m = 0; m < renderers_.size(); ++m) {
-        Addend& addend = addends.emplace_back();
-        addend.sums.resize(measurement_.meters[m].sums.size());
-        for (uint32_t k = 0; k < replicates; ++k) {
+    std::vector<std::vector<ExactSum>> addends;
+    for (const Readings& readings : measurement_.meters) addends.emplace_back(readings.sums.size());
+    RenderCounters counters;
+    for (uint32_t k = 0; k < replicates; ++k) {
+        size_t meter = 0;
+        for (const auto& renderer : renderers_) {
             if (interrupt()) return false;
-            Renderer& renderer = *renderers_[m];
-            renderer.restart(seed_of(settings_.seed, k), views_[m]);
-            renderer.begin_at(first);
-            renderer.render_passes(uint32_t(count));
-            const FilmState film = renderer.state();
-            const FilmShape& shape = renderer.film_shape();
-            const size_t half = shape.sums_a_layer() / 2, stride = 2 * half * shape.layers();
-            for (size_t i = 0; i * stride < film.pixels.size(); ++i)
-                for (size_t at : {i * stride, i * stride + half})
-                    merge(addend.sums[i * replicates + k], film.pixels[at]);
-            etendue::add(addend.counters, film.counters);
+            renderer->restart(seed_of(settings_.seed, k));
+            renderer->begin_at(first);
+            renderer->render_passes(uint32_t(count));
+            const FilmState film = renderer->state();
+            etendue::add(counters, film.counters);
+            const FilmShape shape = renderer->film_shape();
+            const size_t half = shape.sums_a_layer() / 2, stride = shape.sums_a_pixel();
+            const ExactSum* pixel = film.pixels.data();
+            for (size_t v = 0; v < renderer->views().size(); ++v, ++meter)
+                for (size_t i = 0; i < measurement_.meters[meter].meter.pixels(); ++i, pixel += stride)
+                    for (size_t at : {size_t(0), half}) merge(addends[meter][i * replicates + k], pixel[at]);
         }
     }
     measurement_.passes.add(range);
+    etendue::add(measurement_.counters, counters);
     for (size_t m = 0; m < addends.size(); ++m) {
         Readings& readings = measurement_.meters[m];
-        merge(std::span(readings.sums), std::span<const ExactSum>(addends[m].sums));
-        etendue::add(readings.counters, addends[m].counters);
+        merge(std::span(readings.sums), std::span<const ExactSum>(addends[m]));
         readings.passes = measurement_.passes.count() / replicates;
+        readings.forward_paths += counters.forward_paths / renderers_.size();
     }
     measurement_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return true;
 }
 
 std::vector<std::string> MeasurementRun::probe_dark_meters() {
+    std::vector<FilmView> dark_views;
+    std::vector<Readings*> dark;
+    size_t meter = 0;
+    for (const auto& renderer : renderers_)
+        for (const FilmView& view : renderer->views()) {
+            Readings& readings = measurement_.meters[meter++];
+            if (!is_dark(readings) || readings.forward_paths > 0 || !(scene_.power > 0)) continue;
+            dark_views.push_back(view);
+            dark.push_back(&readings);
+        }
+    RenderSettings common = settings_;
+    common.choice.reset();
+    common.algorithm = Algorithm::forward;
     std::vector<std::string> reached;
-    for (size_t m = 0; m < views_.size(); ++m) {
-        Readings& readings = measurement_.meters[m];
-        if (!is_dark(readings) || readings.counters.forward_paths > 0 || !(scene_.power > 0)) continue;
-        RenderSettings settings = settings_;
-        settings.algorithm = Algorithm::forward;
-        settings.receiver = views_[m].receiver;
-        settings.width = views_[m].width, settings.height = views_[m].height;
-        settings.forward_paths = std::max(1.0, probing_paths / double(readings.meter.pixels()));
+    auto readings = dark.begin();
+    for (RenderSettings& settings : settings_of(common, dark_views)) {
+        settings.forward_paths = std::max(1.0, probing_paths / double(pixel_count(all_views(settings))));
         Renderer renderer(device_, scene_, settings);
         renderer.render_passes(1);
-        const Image image = renderer.develop(false);
-        const auto is_lit = [](float x) { return x != 0; };
-        if (std::any_of(image.values.begin(), image.values.end(), is_lit))
-            reached.push_back(readings.meter.name);
-        else
-            readings.probing_paths = renderer.counters().forward_paths;
+        for (size_t v = 0; v < renderer.views().size(); ++v, ++readings) {
+            const Image image = renderer.develop(false, v);
+            const auto is_lit = [](float x) { return x != 0; };
+            if (std::any_of(image.values.begin(), image.values.end(), is_lit))
+                reached.push_back((*readings)->meter.name);
+            else
+                (*readings)->forward_paths = renderer.counters().forward_paths;
+        }
     }
     return reached;
-}
-
-uint64_t MeasurementRun::rays() const {
-    uint64_t rays = 0;
-    for (const Readings& readings : measurement_.meters) rays += all_rays(readings.counters);
-    return rays;
 }
 
 }  // namespace etendue

@@ -1,4 +1,4 @@
-// A measurement: what several meters of a scene read in the same passes.
+// A measurement: what several meters of a scene read in the same passes, of the same forward rays.
 #pragma once
 #include <functional>
 #include <memory>
@@ -11,18 +11,21 @@ namespace etendue {
 struct Measurement {
     std::vector<Readings> meters;
     PassSet passes;      // whole sixteens (`replicates`)
+    RenderCounters counters;
+    AlgorithmChoice choice;
     double seconds = 0;  // of rendering
     double power = 0;    // of the scene's lights, lm
 };
 
-// What `auto` comes to for a meter: backward rays where they find all light, else both ways; no pilot is run,
+// What `auto` comes to for meters: backward rays where they find all light, else both ways; no pilot is run,
 // so that every machine chooses the same.
-AlgorithmChoice choose_for_meter(Device& device, Scene& scene, const Receiver& receiver);
+AlgorithmChoice choose_for_meters(Device& device, Scene& scene,
+                                  const std::vector<const Receiver*>& receivers);
 
 // Adds passes to a measurement.
 class MeasurementRun {
   public:
-    // `settings`: what all meters have in common. Each meter has a renderer of its own; programs are shared.
+    // `settings`: what all meters have in common.
     MeasurementRun(Device& device, Scene& scene, const std::vector<const Receiver*>& receivers,
                    const RenderSettings& settings);
     ~MeasurementRun();
@@ -32,19 +35,18 @@ class MeasurementRun {
     bool add(const PassRange& range, const std::function<bool()>& interrupt);
 
     // Where meters are dark that backward rays alone have read: whether forward rays reach them, and how many
-    // did not (Readings::probing_paths). Returns the names of those that they do reach.
+    // did not. Returns the names of those that they do reach.
     std::vector<std::string> probe_dark_meters();
 
     const Measurement& measurement() const { return measurement_; }
     Measurement& measurement() { return measurement_; }
-    uint64_t rays() const;
+    uint64_t rays() const { return all_rays(measurement_.counters); }
 
   private:
     Device& device_;
     Scene& scene_;
     RenderSettings settings_;  // that all meters have in common
-    std::vector<FilmView> views_;
-    std::vector<std::unique_ptr<Renderer>> renderers_;
+    std::vector<std::unique_ptr<Renderer>> renderers_;  // of most_views meters each, in their order
     Measurement measurement_;
 };
 

@@ -23,10 +23,9 @@ std::string shown(const Attribute& attribute) {
     return fmt::format("{:.10g}", std::get<double>(attribute));
 }
 
-// Where the light has gone, by the forward rays of all meters together.
+// Where the light has gone, by the forward rays.
 std::string ledger(const Measurement& measurement) {
-    RenderCounters all;
-    for (const Readings& readings : measurement.meters) add(all, readings.counters);
+    const RenderCounters& all = measurement.counters;
     if (all.forward_paths == 0) return "";
     const double lumens = measurement.power / double(all.forward_paths);
     Table table = {{"light", "lm", "share of the emitted", ""}};
@@ -50,8 +49,7 @@ std::string meter_section(const ReportOptions& options, const Measurement& measu
                           const Readings& readings, const std::string& name) {
     const Meter& meter = readings.meter;
     std::string html = fmt::format(
-        "<h2>{}</h2>\n<p>{} × {} pixels, {}; {}: {}.</p>\n", escaped(meter.name), meter.columns, meter.rows,
-        meter.unit, algorithm_name(readings.choice.algorithm), escaped(readings.choice.reason));
+        "<h2>{}</h2>\n<p>{} × {} pixels, {}.</p>\n", escaped(meter.name), meter.columns, meter.rows, meter.unit);
     html += as_html(figure_table(figures_of(readings, options.points)));
     if (is_dark(readings))
         html +=
@@ -75,7 +73,8 @@ std::string page_of(const ReportOptions& options, const Measurement& measurement
     for (const auto& [name, value] : options.attributes)
         html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escaped(name), escaped(shown(value)));
     html += "</dl>\n<p>Intervals hold the truth with 95 % confidence, by the spread of " +
-            fmt::format("{} independent renders.</p>\n", replicates);
+            fmt::format("{} independent renders. Rays: {}; {}.</p>\n", replicates,
+                        algorithm_name(measurement.choice.algorithm), escaped(measurement.choice.reason));
     const std::vector<std::string> names = file_names(measurement);
     for (size_t m = 0; m < names.size(); ++m)
         html += meter_section(options, measurement, measurement.meters[m], names[m]);

@@ -44,9 +44,7 @@ struct Readings {
     Meter meter;
     std::vector<ExactSum> sums;  // pixel after pixel, replicate after replicate
     uint64_t passes = 0;         // of each replicate
-    RenderCounters counters;
-    AlgorithmChoice choice;
-    uint64_t probing_paths = 0;  // from the lights, traced for no other end than to see whether any arrives
+    uint64_t forward_paths = 0;  // that have looked for it, in its passes or to probe whether any arrives
 };
 
 using PixelMeans = std::vector<glm::dvec3>;  // linear Rec.709; (1, 1, 1) is one of the meter's units

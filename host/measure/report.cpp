@@ -131,8 +131,8 @@ std::vector<std::string> write_report(const ReportOptions& options, const Measur
         const fs::path stem = options.folder / names[m];
         Image image = to_image(readings);
         image.attributes.insert(options.attributes.begin(), options.attributes.end());
-        image.attributes["rays"] = double(all_rays(readings.counters));
-        image.attributes["algorithm"] = std::string(algorithm_name(readings.choice.algorithm));
+        image.attributes["rays"] = double(all_rays(measurement.counters));
+        image.attributes["algorithm"] = std::string(algorithm_name(measurement.choice.algorithm));
         outputs.write([&] { write_exr(stem.string() + ".exr", image); });
         outputs.write([&] { write_atomically(stem.string() + ".csv", pixel_table(readings, image)); });
         if (readings.meter.is_far) {

@@ -15,11 +15,14 @@ SeenPoint see_point(PreviewScene& scene, const glm::dvec2& film) {
     };
     const Buffer buffer(scene.device, sizeof(Record), "SeenPoints");
     const float film_aspect = float(scene.request.width) / float(scene.request.height);
-    BufferTable table = {{"SeenPoints", &buffer}};
+    const Views views(scene.device, scene.scene,
+                      {{scene.receiver, scene.request.width, scene.request.height}});
+    BufferTable table = views.buffers();
+    table["SeenPoints"] = &buffer;
     std::optional<StartMedia> start_media;  // where the way of a ray depends on the medium that it starts in
     if (scene.scene.features.bending || scene.scene.features.body_count > 0) {
-        start_media.emplace(scene.device, scene.scene, false);
-        start_media->find(scene.receiver, film_aspect);
+        start_media.emplace(scene.device, scene.scene, views, false);
+        start_media->find();
         table["StartMedia"] = &start_media->buffer();
     }
     const Kernel kernel = make_color_kernel(scene.device, scene.scene, "kernels/see_point.comp", table);

@@ -78,9 +78,9 @@ void Film::warm_up() {
     commands_.run();
 }
 
-void Film::resize(uint32_t width, uint32_t height) {
+void Film::resize(uint32_t pixels) {
     not_added_ = {};
-    shape_.width = width, shape_.height = height;
+    shape_.width = pixels, shape_.height = 1;
 }
 
 void Film::clear() {

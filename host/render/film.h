@@ -1,4 +1,5 @@
-// The film: what the passes of one receiver add up to, pixel by pixel.
+// The film: what passes add up to, pixel by pixel. That of a renderer, which serves several receivers, is a
+// single row.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -23,7 +24,9 @@ struct FilmShape {
     // Of a layer of a pixel: twin of struct FilmHalf in shaders/lib/film.glsl, of the even and the odd
     // passes.
     uint32_t sums_a_layer() const { return merging ? 6 : 4; }
-    uint64_t sums() const { return uint64_t(width) * height * layers() * sums_a_layer(); }
+    uint64_t pixels() const { return uint64_t(width) * height; }
+    uint64_t sums_a_pixel() const { return layers() * sums_a_layer(); }
+    uint64_t sums() const { return pixels() * sums_a_pixel(); }
 };
 
 // Passes write their samples beside the film; once there are a few, or somebody looks, they are added to it.
@@ -44,8 +47,7 @@ class Film {
 
     const FilmShape& shape() const { return shape_; }
 
-    void resize(uint32_t width,
-                uint32_t height);  // to no more pixels than at first; what they hold is undefined
+    void resize(uint32_t pixels);  // to no more than at first; what they hold is undefined
     void clear();
     std::vector<ExactSum> read();
     void write(const std::vector<ExactSum>& sums);  // of a film of the same shape

@@ -23,20 +23,17 @@ double merge_radius_factor(uint64_t pass) {
 
 uint32_t forward_paths_a_pass(const RenderSettings& settings) {
     return uint32_t(
-        std::clamp(settings.forward_paths * settings.width * settings.height, 1.0, double(1 << 24)));
+        std::clamp(settings.forward_paths * double(pixel_count(all_views(settings))), 1.0, double(1 << 24)));
 }
 
 ForwardPass describe_pass(const Scene& scene, const RenderSettings& settings, uint64_t pass, uint32_t count,
                           uint32_t seed) {
-    const double pixels = double(settings.width) * settings.height;
     ForwardPass values{};
-    values.receiver = settings.receiver;
-    values.width = settings.width, values.height = settings.height;
     values.pass = uint32_t(pass);
     values.seed = seed + count * 0x9E3779B9u;  // other counts take other sequences
     values.count = count;
-    values.merge_scale = float(settings.merge_radius * merge_radius_factor(pass) / std::sqrt(pixels));
-    values.short_scale = float(short_edge_pixels / std::sqrt(pixels));
+    values.merge_scale = float(settings.merge_radius * merge_radius_factor(pass));
+    values.short_scale = float(short_edge_pixels);
     values.path_flux = float(scene.power / count);
     values.inverse_power = float(1 / scene.power);
     values.splat_unit = float(scene.power / (4 * std::pow(std::numbers::pi * scene.radius, 2)));
@@ -83,7 +80,7 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
 }
 
 uint64_t ForwardRays::splat_bytes() const {
-    return uint64_t(settings_.width) * settings_.height * (scene_.features.spectral ? 32 : 24) *
+    return pixel_count(all_views(settings_)) * (scene_.features.spectral ? 32 : 24) *
            (settings_.stokes ? 4 : 1);
 }
 
@@ -142,9 +139,8 @@ void ForwardRays::trace_paths(CommandList& commands, KernelTimings& timings) {
     commands.run(&timings);
 }
 
-void ForwardRays::restart(const FilmView& view) {
-    settings_.receiver = view.receiver;
-    settings_.width = view.width, settings_.height = view.height;
+void ForwardRays::restart(const RenderSettings& settings) {
+    settings_ = settings;
     all_ = forward_paths_a_pass(settings_);
     fitting_.reset();
     splats_.fill(0, splat_bytes());

@@ -17,7 +17,7 @@ double merge_radius_factor(uint64_t pass);
 
 // Twin of struct ForwardPass in shaders/lib/forward_pass.glsl.
 struct ForwardPass {
-    uint32_t receiver, width, height, pass, seed, count;
+    uint32_t pass, seed, count;
     float merge_scale, short_scale, path_flux, inverse_power, splat_unit;
 };
 // Where there is room for their vertices.
@@ -47,7 +47,7 @@ class ForwardRays {
     uint64_t take_paths() { return std::exchange(paths_, 0); }
     uint64_t take_splits() { return std::exchange(splits_, 0); }
     uint32_t paths_a_pass() const { return fitting_.value_or(all_); }
-    void restart(const FilmView& view);
+    void restart(const RenderSettings& settings);  // with other views
 
   private:
     uint64_t splat_bytes() const;  // of the view at hand

@@ -37,7 +37,7 @@ bool Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_
         at_once = film.begin_passes(first + done, at_once);
         spectra.write(first + done, at_once, settings.seed);
         if (forward) forward->trace(commands, first + done, settings.seed, timings);
-        const uint32_t all = settings.width * settings.height;
+        const uint32_t all = uint32_t(film.shape().pixels());
         uint32_t band = all;  // pixels of a dispatch: all, unless somebody may interrupt
         for (uint32_t pixel = 0; pixel < all; pixel += band) {
             if (interrupted()) return false;
@@ -45,9 +45,7 @@ bool Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_
             const uint32_t pixels = std::min(band, all - pixel);
             const auto start = std::chrono::steady_clock::now();
             commands.dispatch(trace_paths, groups(pixels),
-                              {{"receiver", settings.receiver},
-                               {"width", settings.width},
-                               {"height", settings.height},
+                              {{"pixels", all},
                                {"first_pixel", pixel},
                                {"end_pixel", pixel + pixels},
                                {"first_sample", uint32_t(first) + done},
@@ -63,7 +61,7 @@ bool Renderer::FusedPipeline::run(CommandList& commands, uint64_t first, uint32_
 }
 
 void Renderer::FusedPipeline::warm_up(CommandList& commands) {
-    commands.dispatch(trace_paths, 1, {{"receiver", settings.receiver}});  // of an image without pixels
+    commands.dispatch(trace_paths, 1);  // of no pixels
     commands.run();
 }
 

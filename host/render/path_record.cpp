@@ -111,7 +111,8 @@ PathRecorder::PathRecorder(Device& device, Scene& scene, const RenderSettings& s
       room_(std::max(2u, most_vertices) * (scene.features.bending ? 4 : 1)),
       paths_(settings.width * settings.height),
       spectra_(device, scene),
-      start_media_(std::make_unique<StartMedia>(device, scene, forward)),
+      views_(device, scene, {{settings.receiver, settings.width, settings.height}}),
+      start_media_(std::make_unique<StartMedia>(device, scene, views_, forward)),
       commands_(device) {
     if (forward && !(scene.power > 0)) fail_input("the scene has no light: there are no forward paths");
     if (forward) paths_ = forward_paths_a_pass(settings);
@@ -128,9 +129,10 @@ PathRecorder::PathRecorder(Device& device, Scene& scene, const RenderSettings& s
                          {"PathCounts", &counts_},
                          {"StartMedia", &start_media_->buffer()}};
     table.merge(spectra_.buffers());
+    table.merge(views_.buffers());
     kernel_ = make_kernel(device, scene, "kernels/record_paths.comp", table,
                           forward ? techniques.forward_defines() : techniques.backward_defines());
-    start_media_->find(settings_.receiver, float(settings.width) / float(settings.height));
+    start_media_->find();
 }
 
 PathRecorder::~PathRecorder() = default;
@@ -167,7 +169,7 @@ std::vector<RecordedPath> PathRecorder::record(uint64_t pass, std::span<const ui
         forward_pass_.write(&values, sizeof values);
         unit = values.path_flux;
     } else {
-        start_media_->find_of_receiver(settings_.receiver, float(settings_.width) / float(settings_.height));
+        start_media_->find_of_receivers();
     }
     spectra_.write(pass, 1, settings_.seed);
     const glm::vec4 nm =
@@ -181,9 +183,6 @@ std::vector<RecordedPath> PathRecorder::record(uint64_t pass, std::span<const ui
         commands_.dispatch(kernel_, (count + kernel_.group_size() - 1) / kernel_.group_size(),
                            {{"count", count},
                             {"room", room_},
-                            {"receiver", settings_.receiver},
-                            {"width", settings_.width},
-                            {"height", settings_.height},
                             {"pass", uint32_t(pass)},
                             {"seed", settings_.seed}});
         commands_.run();

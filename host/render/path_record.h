@@ -95,6 +95,7 @@ class PathRecorder {
     bool forward_;
     uint32_t room_, paths_, batch_;
     SpectralPasses spectra_;
+    Views views_;
     std::unique_ptr<StartMedia> start_media_;
     Buffer forward_pass_, indices_, vertices_, counts_;
     Kernel kernel_;

@@ -149,7 +149,8 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       scene_(scene),
       settings_(settings),
       schedule_(settings.schedule),
-      most_pixels_(settings.width * settings.height),
+      views_(device, scene, all_views(settings)),
+      most_pixels_(views_.pixels()),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
       receiver_moves_(scene.receiver_moves),
       spectra_(device, scene),
@@ -167,24 +168,24 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     techniques.stokes = settings_.stokes;
     techniques.connect &= settings_.connect;
     techniques.beams &= settings_.beams;
+    techniques.several_views = views_.count() > 1;
     film_ = std::make_unique<Film>(
-        device, scene, FilmShape{settings.width, settings.height, techniques.merge, settings_.stokes},
-        timings_);
+        device, scene, FilmShape{uint32_t(most_pixels_), 1, techniques.merge, settings_.stokes}, timings_);
     if (!settings.restarts_first) film_->clear();
     BufferTable film = film_->buffers();
+    film.merge(views_.buffers());
     film["CounterSums"] = &counter_sums_;
     scene.features.spectral_bins = scene.features.spectral ? settings.spectral_bins : 0;
     if (scene.features.spectral_bins > 0) {
-        spectral_film_.emplace(device, settings.width * settings.height, settings.spectral_bins,
-                               settings_.stokes);
+        spectral_film_.emplace(device, uint32_t(most_pixels_), settings.spectral_bins, settings_.stokes);
         film.merge(spectral_film_->buffers());
     }
     if (schedule_ == Schedule::automatic)
         schedule_ = settings_.schedule = choose_schedule(device, scene, techniques);
     settings_.connect = techniques.connect;
     settings_.beams = techniques.beams;
-    start_media_ = std::make_unique<StartMedia>(device, scene, techniques.forward);
-    start_media_->find(settings.receiver, film_aspect());
+    start_media_ = std::make_unique<StartMedia>(device, scene, views_, techniques.forward);
+    start_media_->find();
     film["StartMedia"] = &start_media_->buffer();
     film.merge(spectra_.buffers());
     if (techniques.forward) {
@@ -226,8 +227,6 @@ bool Renderer::render_passes(uint32_t count) {
     return true;
 }
 
-float Renderer::film_aspect() const { return float(settings_.width) / float(settings_.height); }
-
 void Renderer::set_interrupt(std::function<bool()> interrupt) { pipeline_->interrupt = std::move(interrupt); }
 
 void Renderer::restart(uint32_t seed) {
@@ -235,27 +234,28 @@ void Renderer::restart(uint32_t seed) {
 }
 
 void Renderer::restart(uint32_t seed, const FilmView& view) {
-    if (uint64_t(view.width) * view.height > most_pixels_)
+    std::vector<FilmView> views = views_.all();
+    views[0] = view;
+    if (pixel_count(views) > most_pixels_)
         fail_device("a film of {} x {} pixels is larger than the renderer was made for", view.width,
                     view.height);
-    const float aspect_before = film_aspect();
-    const bool same_receiver =
-        settings_.receiver == view.receiver && receiver_moves_ == scene_.receiver_moves;
     for (RenderSettings* settings : {&settings_, &pipeline_->settings}) {
         settings->seed = seed;
         settings->receiver = view.receiver;
         settings->width = view.width, settings->height = view.height;
     }
-    if (!same_receiver || aspect_before != film_aspect())
-        start_media_->find_of_receiver(settings_.receiver, film_aspect());
+    if (views != views_.all() || receiver_moves_ != scene_.receiver_moves) {
+        views_.set(views);
+        start_media_->find_of_receivers();
+    }
     receiver_moves_ = scene_.receiver_moves;
-    film_->resize(view.width, view.height);
-    if (spectral_film_) spectral_film_->resize(view.width * view.height);
+    film_->resize(uint32_t(views_.pixels()));
+    if (spectral_film_) spectral_film_->resize(uint32_t(views_.pixels()));
     last_pass_seconds_ = 0;
     film_->clear();
     if (spectral_film_) spectral_film_->clear();
     counter_sums_.fill(0);
-    if (forward_) forward_->restart(view);
+    if (forward_) forward_->restart(settings_);
     counters_ = {};
     passes_ = {};
 }
@@ -289,24 +289,23 @@ void Renderer::read_counters() {
     counters_.roulette += sums.flux_sum(6);
 }
 
-void Renderer::add_aovs(Image& image, uint32_t count) {
+void Renderer::add_aovs(Image& image, uint32_t count, size_t view) {
     struct Aov {
         glm::vec3 albedo, normal;
         float depth;
     };
     const size_t pixels = pixel_count(image), band = std::min<size_t>(pixels, 1 << 20);  // fits in a binding
     const Buffer buffer(device_, band * sizeof(Aov), "Aovs");
-    const Kernel kernel = make_color_kernel(device_, scene_, "kernels/trace_aovs.comp",
-                                            {{"Aovs", &buffer}, {"StartMedia", &start_media_->buffer()}});
+    BufferTable table = views_.buffers();
+    table.merge(BufferTable{{"Aovs", &buffer}, {"StartMedia", &start_media_->buffer()}});
+    const Kernel kernel =
+        make_color_kernel(device_, scene_, "kernels/trace_aovs.comp", table, views_.defines());
     std::vector<Aov> aovs;
     for (size_t first = 0; first < pixels; first += band) {
         const size_t count_here = std::min(band, pixels - first);
         commands_.dispatch(kernel, uint32_t((count_here + kernel.group_size() - 1) / kernel.group_size()),
-                           {{"receiver", settings_.receiver},
-                            {"first_pixel", uint32_t(first)},
-                            {"pixel_count", uint32_t(count_here)},
-                            {"width", settings_.width},
-                            {"height", settings_.height},
+                           {{"first_pixel", uint32_t(views_.first_pixel(view) + first)},
+                            {"pixels", uint32_t(count_here)},
                             {"sample_count", count},
                             {"seed", settings_.seed}});
         commands_.run(&timings_);
@@ -319,7 +318,7 @@ void Renderer::add_aovs(Image& image, uint32_t count) {
 
 void Renderer::read_picture(std::vector<glm::vec3>& picture) {
     if (!picture_) {
-        picture_ = Buffer(device_, uint64_t(most_pixels_) * sizeof(glm::vec3), "Picture");
+        picture_ = Buffer(device_, most_pixels_ * sizeof(glm::vec3), "Picture");
         BufferTable buffers = film_->buffers();
         buffers["Picture"] = &picture_;
         develop_film_ =
@@ -337,15 +336,47 @@ void Renderer::read_picture(std::vector<glm::vec3>& picture) {
     picture_.read(picture.data(), picture.size() * sizeof(glm::vec3));
 }
 
+std::vector<FilmView> all_views(const RenderSettings& settings) {
+    std::vector<FilmView> views = {{settings.receiver, settings.width, settings.height}};
+    views.insert(views.end(), settings.beside.begin(), settings.beside.end());
+    return views;
+}
+
+FilmShape Renderer::film_shape(size_t view) const {
+    FilmShape shape = film_->shape();
+    shape.width = views()[view].width, shape.height = views()[view].height;
+    return shape;
+}
+
+std::span<const ExactSum> Renderer::part(std::span<const ExactSum> sums, size_t view) const {
+    const size_t stride = sums.size() / views_.pixels();
+    return sums.subspan(views_.first_pixel(view) * stride, views()[view].pixels() * stride);
+}
+
+Image Renderer::develop(bool errors, size_t view) const {
+    const std::vector<ExactSum> sums = film_->read();
+    return develop_film(film_shape(view), part(sums, view), passes_, errors);
+}
+
+RelativeError Renderer::relative_error() const {
+    const std::vector<ExactSum> sums = film_->read();
+    RelativeError worst = film_relative_error(film_shape(0), part(sums, 0), passes_);
+    for (size_t v = 1; v < views_.count(); ++v) {
+        const RelativeError error = film_relative_error(film_shape(v), part(sums, v), passes_);
+        if (!(error.value() <= worst.value())) worst = error;
+    }
+    return worst;
+}
+
 FilmState Renderer::state() const {
     return {film_->read(), passes_, counters_,
             spectral_film_ ? spectral_film_->read() : std::vector<ExactSum>()};
 }
 
-void Renderer::add_spectra(Image& image) const {
-    if (spectral_film_)
-        etendue::add_spectra(image, spectral_film_->read(), settings_.spectral_bins, film_->shape().layers(),
-                             passes());
+void Renderer::add_spectra(Image& image, size_t view) const {
+    if (!spectral_film_) return;
+    const std::vector<ExactSum> sums = spectral_film_->read();
+    etendue::add_spectra(image, part(sums, view), settings_.spectral_bins, film_->shape().layers(), passes());
 }
 
 void Renderer::restore(const FilmState& state) {

@@ -1,4 +1,5 @@
-// Passes over a scene: the schedule of kernels that fills the film of one receiver.
+// Passes over a scene: the schedule of kernels that fills the film of a receiver, or of several
+// receivers that the same forward rays serve.
 //
 // A pass is one backward path a pixel, and what it brings depends on its number and the settings alone:
 // random numbers, wavelengths, radius of merging and number of forward paths. Sums do not depend on their
@@ -20,6 +21,7 @@
 #include "host/render/spectral_film.h"
 #include "host/render/spectral_passes.h"
 #include "host/render/start_media.h"
+#include "host/render/views.h"
 #include "host/scene/scene.h"
 
 namespace etendue {
@@ -40,6 +42,7 @@ AlgorithmChoice choice_from_json(const nlohmann::json& json);
 struct RenderSettings {
     uint32_t width = 512, height = 512;
     uint32_t receiver = no_record;  // RecordRef
+    std::vector<FilmView> beside;   // further receivers, which the same forward rays serve
     uint32_t seed = 0;
     Algorithm algorithm = Algorithm::automatic;
     Schedule schedule = Schedule::automatic;
@@ -54,11 +57,8 @@ struct RenderSettings {
     bool stokes = false;         // S1 to S3, too, where paths carry polarization
 };
 
-// What a film shows, and in how many pixels.
-struct FilmView {
-    uint32_t receiver = no_record;  // RecordRef
-    uint32_t width = 0, height = 0;
-};
+// The first view, and those beside it.
+std::vector<FilmView> all_views(const RenderSettings& settings);
 
 // Sums over all passes. Importance: every path starts with 1.
 struct RenderCounters {
@@ -79,7 +79,7 @@ RenderCounters counters_from_json(const nlohmann::json& json);
 
 // What accumulates over passes.
 struct FilmState {
-    std::vector<ExactSum> pixels;  // of Film
+    std::vector<ExactSum> pixels;  // of Film, view after view
     PassSet passes;
     RenderCounters counters;
     std::vector<ExactSum> bins;  // of SpectralFilm, if there is one
@@ -114,7 +114,7 @@ class Renderer {
     void set_interrupt(std::function<bool()> interrupt);
     // An empty film again; kernels and timings stay. What move_receiver has changed is seen from here on.
     void restart(uint32_t seed);
-    // The same for another receiver or size, with at most as many pixels as at first.
+    // The same for another receiver or size of the first view, with at most as many pixels as at first.
     void restart(uint32_t seed, const FilmView& view);
     // How many passes take about `seconds` by the speed of the last batch; 1 before the first.
     uint32_t passes_in(double seconds) const;
@@ -130,20 +130,17 @@ class Renderer {
     // The same algorithm is chosen for another reason than was known when the renderer was made.
     void explain(const AlgorithmChoice& choice) { choice_ = choice; }
 
-    const FilmShape& film_shape() const { return film_->shape(); }
-    Image develop(bool errors = true) const {
-        return develop_film(film_->shape(), film_->read(), passes_, errors);
-    }
-    // The mean radiance alone, developed on the device.
+    const std::vector<FilmView>& views() const { return views_.all(); }
+    FilmShape film_shape(size_t view = 0) const;
+    Image develop(bool errors = true, size_t view = 0) const;
+    // The mean radiance of the first view alone, developed on the device.
     void read_picture(std::vector<glm::vec3>& picture);
     bool is_stokes() const { return film_->shape().stokes; }  // S1 to S3 are developed, too
     // Adds the spectra of a spectral image, if it is one (add_spectra in spectral_film.h).
-    void add_spectra(Image& image) const;
-    RelativeError relative_error() const {
-        return film_relative_error(film_->shape(), film_->read(), passes_);
-    }
+    void add_spectra(Image& image, size_t view = 0) const;
+    RelativeError relative_error() const;  // of the view where it is greatest
     // Adds albedo.RGB, normal.XYZ and depth.Z of what the pixels see, by `count` primary rays a pixel.
-    void add_aovs(Image& image, uint32_t count);
+    void add_aovs(Image& image, uint32_t count, size_t view = 0);
 
     FilmState state() const;
     void restore(const FilmState& state);  // of a film of the same size
@@ -153,13 +150,15 @@ class Renderer {
     struct FusedPipeline;
     struct WavefrontPipeline;
     void read_counters();
-    float film_aspect() const;
+    // Of a view, of the sums of all.
+    std::span<const ExactSum> part(std::span<const ExactSum> sums, size_t view) const;
     Device& device_;
     Scene& scene_;
     AlgorithmChoice choice_;
     RenderSettings settings_;
     Schedule schedule_;
-    uint32_t most_pixels_;
+    Views views_;
+    uint64_t most_pixels_;
     KernelTimings timings_;
     std::unique_ptr<Film> film_;
     std::optional<SpectralFilm> spectral_film_;

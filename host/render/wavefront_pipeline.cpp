@@ -26,13 +26,13 @@ Renderer::WavefrontPipeline::WavefrontPipeline(Device& device, Scene& scene, con
                                                const BufferTable& buffers, bool by_class)
     : Pipeline(s, forward, spectra, film),
       paths(device, scene, Wavefront::Direction::backward, techniques,
-            slots_for(device, s.width * s.height, forward), by_class, buffers),
+            slots_for(device, uint32_t(film.shape().pixels()), forward), by_class, buffers),
       record_samples(make_kernel(device, scene, "kernels/record_samples.comp",
                                  joined(buffers, paths.buffers()), techniques.backward_defines())) {}
 
 bool Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uint32_t count,
                                       KernelTimings& timings) {
-    const uint32_t pixels = settings.width * settings.height;
+    const uint32_t pixels = uint32_t(film.shape().pixels());
     const uint32_t tile = std::min(pixels, paths.slots());
     const uint32_t samples_at_once =
         forward ? 1 : std::min(std::max(1u, paths.slots() / pixels), spectra.capacity());
@@ -52,18 +52,15 @@ bool Renderer::WavefrontPipeline::run(CommandList& commands, uint64_t first, uin
 void Renderer::WavefrontPipeline::run_tile(CommandList& commands, uint32_t first_pixel, uint32_t pixels,
                                            uint32_t first_sample, uint32_t samples, KernelTimings& timings) {
     paths.trace(commands, pixels * samples,
-                {{"receiver", settings.receiver},
-                 {"first_pixel", first_pixel},
+                {{"first_pixel", first_pixel},
                  {"tile_pixels", pixels},
                  {"first_sample", first_sample},
-                 {"width", settings.width},
-                 {"height", settings.height},
                  {"seed", settings.seed}},
                 timings);
     commands.dispatch(record_samples, Wavefront::groups(record_samples, pixels, 1),
                       {{"first_pixel", first_pixel},
                        {"tile_pixels", pixels},
-                       {"pixels", settings.width * settings.height},
+                       {"pixels", uint32_t(film.shape().pixels())},
                        {"sample_passes", film.sample_passes()},
                        {"first_sample", first_sample},
                        {"samples_at_once", samples}});

@@ -321,7 +321,8 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
             text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n",
                                 info->name);
         if (interface.interface == Interface::receiver) {
-            text += fmt::format("#define {}_HAS_RECEPTOR {}\n", info->name, info->has_receptor ? 1 : 0);
+            text += fmt::format("#define {0}_HAS_RECEPTOR {1:d}\n#define {0}_IS_FAR {2:d}\n", info->name,
+                                info->has_receptor, info->is_far);
             if (!info->has_receptor)
                 text +=
                     fmt::format("#define {}_receptor(r, origin, direction) no_receptor_hit()\n", info->name);

@@ -7,6 +7,7 @@
 //   BEAMS             … in media that are the same everywhere along rays
 //   FORWARD_ONLY      what forward rays can bring is brought by nothing else
 //   HAS_SPLATS        forward rays bring light to pixels
+//   SEVERAL_VIEWS     several receivers share the forward rays (features/views.glsl)
 //   STOKES_IMAGE      the film has layers for S1 to S3 (features/stokes_images.glsl)
 #ifndef FORWARD
 #define FORWARD 0
@@ -25,6 +26,9 @@
 #endif
 #ifndef FORWARD_ONLY
 #define FORWARD_ONLY 0
+#endif
+#ifndef SEVERAL_VIEWS
+#define SEVERAL_VIEWS 0
 #endif
 #ifndef STOKES_IMAGE
 #define STOKES_IMAGE 0

@@ -1,16 +1,7 @@
 // Where vertices of backward and forward paths merge, and with what density (stages/merge_vertices.glsl).
-#include "interfaces/receiver.glsl"
+#include "features/views.glsl"
 #include "lib/forward_pass.glsl"
 #include "lib/materials.glsl"
-
-// Of the receiver's image.
-float film_aspect() { return float(forward_pass.width) / float(forward_pass.height); }
-float pixel_count() { return float(forward_pass.width) * float(forward_pass.height); }
-uint pixel_of(vec2 film) {
-    uvec2 size = uvec2(forward_pass.width, forward_pass.height);
-    uvec2 pixel = min(uvec2(film * vec2(size)), size - 1u);
-    return pixel.y * size.x + pixel.x;
-}
 
 bool is_narrow(uint material) {
     bool is_medium = HAS_SCATTERING == 1 && material == NO_RECORD;
@@ -18,14 +9,27 @@ bool is_narrow(uint material) {
 }
 
 #if MERGE_VERTICES
-// Radii in footprints of the receiver. Images of few pixels and wide angles get less than they ask for: lib/vertex_grid.glsl wants
-// radii that change slowly.
-float merge_scale(float slope) { return min(forward_pass.merge_scale, 0.05 / max(slope, 1e-6)); }
+// Square root of the area that a pixel covers there, m, and by how much it changes over a metre.
+float pixel_footprint(View v, vec3 position, out float slope) {
+    float width = inversesqrt(pixel_count(v));
+    float footprint = receiver_footprint(v.receiver, position, film_aspect(v), slope);
+    slope *= width;
+    return footprint * width;
+}
+// Radii in footprints of pixels, of the view that has the finest. Images of few pixels and wide angles get less than they ask
+// for: lib/vertex_grid.glsl wants radii that change slowly.
 float merge_radius(vec3 position, out float slope) {
-    float footprint = receiver_footprint(forward_pass.receiver, position, film_aspect(), slope);
-    float scale = merge_scale(slope);
-    slope *= scale;
-    return scale * footprint;
+    float radius = INFINITY;
+    slope = 0.0;
+    for (uint v = 0u; v < VIEW_COUNT; ++v) {
+        float slope_here;
+        float footprint = pixel_footprint(views[v], position, slope_here);
+        float scale = min(forward_pass.merge_scale, 0.05 / max(slope_here, 1e-6));
+        if (scale * footprint >= radius) continue;
+        radius = scale * footprint;
+        slope = scale * slope_here;
+    }
+    return radius;
 }
 float merge_radius(vec3 position) {
     float slope;
@@ -39,8 +43,9 @@ float merge_density(bool in_volume, vec3 position) {
 
 // Whether the edge between a vertex that merges and the next one towards the receiver is short enough to ask for merging.
 bool is_short_edge(vec3 merging, vec3 next) {
-    float slope;
-    return distance(merging, next) < forward_pass.short_scale * receiver_footprint(forward_pass.receiver, merging, film_aspect(), slope);
+    float slope, footprint = INFINITY;
+    for (uint v = 0u; v < VIEW_COUNT; ++v) footprint = min(footprint, pixel_footprint(views[v], merging, slope));
+    return distance(merging, next) < forward_pass.short_scale * footprint;
 }
 #else
 #define merge_radius(position) 0.0

@@ -121,9 +121,10 @@ void update_mis(inout Path path, VertexMis m, uint material, BsdfSample b, float
 // (1/sr), forward paths.
 float others_of_hit(Path path, uint light, LightHit hit, float sampling) {
     float emission = light_pdf_emit(lights[light], scene_bounds(), path.direction, hit) * emitter_probability(light);
+    if ((path.flags & PATH_STARTS) != 0u) sampling = 0.0;
     return sampling * path.vcm / passage_of(path) + emission * path.vc;
 }
-bool hit_stands_alone(Path path) { return (path.flags & PATH_STARTS) != 0u; }
+bool hit_stands_alone(Path path) { return (path.flags & PATH_STARTS) != 0u && !(HAS_FAR_RECEIVERS == 1 && path.vc > 0.0); }
 
 // … of a light sample, by rays that hit the light and by forward paths.
 float others_of_light_sample(Path path, ScatteringPoint s, LightSample l, uint light, Scattering pair, VertexMis mis) {
@@ -140,6 +141,13 @@ float others_of_receiver_sample(Path path, ScatteringPoint s, vec3 direction, fl
     return backward * (merging + connects(path) * mis.vcm + pair.pdf_reverse * mis.vc);
 }
 
+// … of light that escapes to a receiver far away, to which connections choose its direction with this density (1/sr).
+float others_of_escape(Path path, float importance, float connecting) {
+    if ((path.flags & PATH_STARTS) != 0u) connecting = 0.0;
+    float merging = comes_from_beam(path) ? 0.0 : path.pending;
+    return connecting * path.vcm / passage_of(path) + importance / float(forward_pass.count) * (path.vc + merging);
+}
+
 #else
 #define start_forward_weights(path, density, is_delta, light, normal)
 #define vertex_mis(path, p, s) VertexMis(0.0, 0.0, 0.0, false)
@@ -149,4 +157,5 @@ float others_of_receiver_sample(Path path, ScatteringPoint s, vec3 direction, fl
 #define hit_stands_alone(path) (!(path.pdf > 0.0))
 #define others_of_light_sample(path, s, l, light, pair, mis) ((l.is_delta ? 0.0 : pair.pdf) / l.pdf)
 #define others_of_receiver_sample(path, s, direction, importance, pair, mis) 0.0
+#define others_of_escape(path, importance, connecting) (path.pdf > 0.0 ? (connecting) / (path.pdf * passage_of(path)) : 0.0)
 #endif

@@ -7,7 +7,7 @@
 // Rows and vectors meet where paths do (Mojzík et al. 2016, "Bi-directional Polarised Light Transport").
 #include "features/polarized_lights.glsl"
 #include "features/stokes_images.glsl"
-#include "interfaces/receiver.glsl"
+#include "features/views.glsl"
 #include "lib/forward_pass.glsl"
 #include "lib/light_vertices.glsl"
 #include "lib/path.glsl"
@@ -199,7 +199,7 @@ Received seen_light(Path path, Spectrum brought, uint light) {
 #define analysed(shadow, brought) scaled(meet(shadow.polarization, shadow.end), brought)
 #elif STOKES_IMAGE && FORWARD
 Received analysed(ShadowRay shadow, Spectrum brought) {
-    vec3 axis = receiver_stokes_axis(forward_pass.receiver, -shadow.direction);
+    vec3 axis = receiver_stokes_axis(view_of(shadow.target).receiver, -shadow.direction);
     Polarization p = turned(shadow.polarization, double_angle(stokes_axis(shadow.direction), axis, shadow.direction));
     return scaled(Stokes(Spectrum(1), p.s1, p.s2, p.s3), brought);
 }

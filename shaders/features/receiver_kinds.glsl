@@ -22,9 +22,21 @@ ReceptorHit receiver_receptor(uint ref, vec3 origin, vec3 direction) {
     }
     return result;
 }
+#else
+#define has_receptor(ref) false
 #endif
 
 #if HAS_FAR_RECEIVERS
+bool is_far(uint ref) {
+    bool result = false;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_IS_FAR == 1; break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
 ReceiverSample receiver_far(uint ref, vec3 direction, float film_aspect) {
     ReceiverSample result = no_receiver_sample();
     switch (record_tag(ref)) {
@@ -34,4 +46,6 @@ ReceiverSample receiver_far(uint ref, vec3 direction, float film_aspect) {
     }
     return result;
 }
+#else
+#define is_far(ref) false
 #endif

@@ -4,7 +4,7 @@
 //
 // Where a receptor coincides with a surface it lies on top: a forward ray is caught a margin before, from where it goes on.
 #include "features/bending.glsl"
-#include "features/receiver_kinds.glsl"
+#include "features/views.glsl"
 #include "lib/forward_pass.glsl"
 #include "lib/frames.glsl"
 #include "lib/hits.glsl"
@@ -17,16 +17,36 @@ float receptor_margin(vec3 origin, float t) {
     return 16.0 * EPSILON * (max(a.x, max(a.y, a.z)) + t);
 }
 
+#if FORWARD
+// The view whose receptor the ray meets next, and where.
+uint next_receptor(Path path, out ReceptorHit nearest) {
+    uint view = 0u;
+    nearest = no_receptor_hit();
+    for (uint v = 0u; v < VIEW_COUNT; ++v) {
+        if ((path.flags >> (PATH_PASSED_SHIFT + v) & 1u) != 0u) continue;
+        ReceptorHit r = receiver_receptor(views[v].receiver, path.origin, path.direction);
+        if (!(r.t < nearest.t)) continue;
+        nearest = r;
+        view = v;
+    }
+    return view;
+}
+uint receptor_ahead(Path path) {
+    ReceptorHit r;
+    return next_receptor(path, r);
+}
+#endif
+
 // Readies the path for its next ray and returns where that ends at the latest.
 float begin_ray(inout Path path) {
     float end = begin_step(path);
 #if FORWARD
     path.flags &= ~PATH_TO_RECEPTOR;
-    if ((path.flags & PATH_PAST_RECEPTOR) != 0u) return end;
-    float t = receiver_receptor(forward_pass.receiver, path.origin, path.direction).t;
-    if (!(t < end)) return end;
+    ReceptorHit r;
+    next_receptor(path, r);
+    if (!(r.t < end)) return end;
     path.flags |= PATH_TO_RECEPTOR;
-    return max(t - receptor_margin(path.origin, t), 0.0);
+    return max(r.t - receptor_margin(path.origin, r.t), 0.0);
 #else
     return (path.flags & PATH_TO_RECEPTOR) != 0u ? 0.0 : end;
 #endif
@@ -42,7 +62,8 @@ SurfacePoint receptor_point(Path path) {
     p.position = path.origin;
     p.geometric_normal = -path.direction;
 #if FORWARD
-    ReceptorHit r = receiver_receptor(forward_pass.receiver, path.origin, path.direction);
+    ReceptorHit r;
+    next_receptor(path, r);
     p.position += r.t * path.direction;
     p.geometric_normal = r.normal;
 #endif
@@ -56,13 +77,13 @@ SurfacePoint receptor_point(Path path) {
     return p;
 }
 
-void leave_receptor(inout Path path) { path.flags &= ~(PATH_TO_RECEPTOR | PATH_PAST_RECEPTOR); }
+void leave_receptor(inout Path path) { path.flags &= ((1u << PATH_PASSED_SHIFT) - 1u) & ~PATH_TO_RECEPTOR; }
 
 #if FORWARD
 // Light goes on from a little before where it was caught.
 void pass_receptor(inout Path path, SurfacePoint p) {
+    path.flags |= 1u << (PATH_PASSED_SHIFT + receptor_ahead(path));
     path.origin = p.position - 2.0 * receptor_margin(p.position, distance(p.position, path.origin)) * path.direction;
-    path.flags |= PATH_PAST_RECEPTOR;
 }
 
 // The end of an event at a receptor: the shadow ray has no way to go, the path goes on. A macro, since it returns.
@@ -83,11 +104,5 @@ bool goes_to_receptor(Path path) { return (path.flags & PATH_TO_RECEPTOR) != 0u;
 #define is_caught(path, hit, scatters) false
 #define receptor_point(path) volume_point(vec3(0), vec3(0))
 #define leave_receptor(path)
-#endif
-
-// Does the receiver see the points of the scene, or those of its receptor?
-#if HAS_RECEPTORS && FORWARD
-bool is_for_receiver(bool caught) { return caught == has_receptor(forward_pass.receiver); }
-#else
-#define is_for_receiver(caught) true
+#define receptor_ahead(path) 0u
 #endif

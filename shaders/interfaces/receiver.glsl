@@ -14,7 +14,7 @@
 //   ReceptorHit    NAME_receptor(R r, vec3 origin, vec3 direction)   where light that passes on the ray is caught: all paths of this
 //                               receiver end at its receptor, a white diffuse plane that nothing else sees (features/receptors.glsl)
 //   ReceiverSample NAME_far(R r, vec3 direction, float film_aspect)   what light that leaves the scene along `direction` adds: the flux F
-//                               adds F * density * weight to the mean over the film; pdf is 1
+//                               adds F * density * weight to the mean over the film; pdf is that of `connect` choosing it, 1/sr
 //
 // A pixel of a camera is a radiance; that of a meter, which measures and shows no picture, what the words "A pixel: UNIT." of the
 // class's comment say.

@@ -1,9 +1,9 @@
 // Starts a path in every slot.
-// Reads: receiver. Writes: paths, the ray queue of bounce 0 and its count. Barrier expected: after the dispatch.
+// Reads: views, receivers. Writes: paths, the ray queue of bounce 0 and its count. Barrier expected: after the dispatch.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
-    uint paths, receiver;
-    uint first_pixel, tile_pixels, first_sample, width, height, seed;
+    uint paths;
+    uint first_pixel, tile_pixels, first_sample, seed;
 };
 #include "lib/wavefront.glsl"
 #include "stages/emit_camera_ray.glsl"
@@ -14,6 +14,7 @@ void main() {
     if (slot >= paths) return;
     uint pixel = first_pixel + slot % tile_pixels;
     uint sample_index = first_sample + slot / tile_pixels;
-    store_path(slot, emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), sample_index, seed));
+    View view = view_of(pixel);
+    store_path(slot, emit_camera_ray(view, pixel - view.first_pixel, sample_index, seed));
     ray_queue[slot] = slot;
 }

@@ -1,4 +1,4 @@
-// The media that paths start in (lib/start_media.glsl), one lane a question: at the receiver and, with OF_LIGHTS, on either side
+// The media that paths start in (lib/start_media.glsl), one lane a question: at the receivers of the views and, with OF_LIGHTS, on either side
 // of every light.
 //
 // A ray from there goes straight on to infinity. It starts in the medium that it first leaves without having entered it, or in
@@ -16,13 +16,11 @@
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
     uint first, count;
-    uint receiver;  // RecordRef
-    float film_aspect;
 };
 
 #include "interfaces/light_source.glsl"
-#include "interfaces/receiver.glsl"
 #include "features/faces.glsl"
+#include "features/views.glsl"
 #include "lib/materials.glsl"
 #include "lib/primitives.glsl"
 #include "lib/sampler.glsl"
@@ -62,18 +60,20 @@ bool begin_witness(uint question, uint k, bool is_first, out Witness w) {
     w.since = w.answer = surroundings_of(NO_RECORD);
     w.knows = false;
     w.light = NO_RECORD - 1u;  // not that of surfaces that are no lights
-    if (question == 0u) {
-        w.origin = receiver_emit(receiver, u_position, u_direction, film_aspect).origin;
+    if (question < VIEW_COUNT) {
+        View view = views[question];
+        w.origin = receiver_emit(view.receiver, u_position, u_direction, film_aspect(view)).origin;
         return true;
     }
+    question -= VIEW_COUNT;
     if (OF_LIGHTS == 0) return false;
-    w.light = (question - 1u) / 2u;
+    w.light = question / 2u;
     if (w.light < uint(INFINITE_LIGHT_COUNT)) return false;
     EmittedRay ray = light_emit(lights[w.light], scene_bounds(), u_position, u_direction);
     w.origin = offset_origin(ray.origin, ray.error, ray.normal, ray.direction);
     w.turns = is_first;
     if (is_first) w.direction = ray.normal;
-    return ray.pdf > 0.0 && ray.front == ((question & 1u) != 0u);
+    return ray.pdf > 0.0 && ray.front == ((question & 1u) == 0u);
 }
 
 // The ray has met a surface. True: it knows what medium it started in, bodies aside.

@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 layout(push_constant) uniform Push {
     uint count;  // of the paths
     uint room;   // for vertices of a path; what is longer is cut
-    uint receiver, width, height, pass, seed;  // of backward paths
+    uint pass, seed;  // of backward paths
 };
 
 #define RECORD_PATHS
@@ -54,7 +54,7 @@ void main() {
     uint light = recorded_light;
 #else
     uint pixel = path_indices[i];
-    Path path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), pass, seed);
+    Path path = emit_camera_ray(views[0], pixel, pass, seed);
     uint light = NO_RECORD;
 #endif
     float carried = luminance(path.throughput);

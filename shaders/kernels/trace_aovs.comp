@@ -4,10 +4,7 @@
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
-    uint receiver;
-    uint first_pixel, pixel_count;  // of this dispatch
-    uint width;
-    uint height;
+    uint first_pixel, pixels;  // of this dispatch, among those of all views
     uint sample_count;
     uint seed;
 };
@@ -24,12 +21,13 @@ layout(scalar, set = 0) buffer Aovs { Aov aovs[]; };
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= pixel_count) return;
+    if (i >= pixels) return;
     uint pixel = first_pixel + i;
+    View view = view_of(pixel);
     Aov sum = Aov(vec3(0), vec3(0), 0.0);
     float hits = 0.0;
     for (uint s = 0u; s < sample_count; ++s) {
-        Path path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height), s, seed);
+        Path path = emit_camera_ray(view, pixel - view.first_pixel, s, seed);
         FirstHit first = find_first(path);
         if (!first.found) continue;
         ScatteringPoint point = scattering_point(first.p, path.direction, first.sides);

@@ -5,9 +5,7 @@
 layout(local_size_x = 64) in;
 
 layout(push_constant) uniform Push {
-    uint receiver;       // RecordRef
-    uint width;
-    uint height;
+    uint pixels;         // of all views
     uint first_pixel, end_pixel;  // of this dispatch
     uint first_sample;   // index of the first pass
     uint sample_count;   // passes of this dispatch
@@ -29,8 +27,8 @@ void main() {
     while (pixel < end_pixel) {
         if (!alive) {
             begin_pass(sample_index);
-            path = emit_camera_ray(receiver, uvec2(pixel % width, pixel / width), uvec2(width, height),
-                                   first_sample + sample_index, seed);
+            View view = view_of(pixel);
+            path = emit_camera_ray(view, pixel - view.first_pixel, first_sample + sample_index, seed);
         }
         counters.rays++;
         float end = begin_ray(path);
@@ -39,7 +37,7 @@ void main() {
         alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
         trace_shadows(shadow, vertex_shadow, path.radiance, counters);
         if (!alive) {
-            uint place = sample_place(pixel, width * height, first_sample + sample_index, sample_passes);
+            uint place = sample_place(pixel, pixels, first_sample + sample_index, sample_passes);
             record_sample(place, pixel, path, counters);
             if (++sample_index == sample_count) {
                 pixel += lanes;

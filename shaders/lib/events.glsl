@@ -2,7 +2,6 @@
 #include "features/bending.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
-#include "features/far_receivers.glsl"
 #include "features/receptors.glsl"
 #include "features/recording.glsl"
 #include "features/straight.glsl"
@@ -58,7 +57,6 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
     if (!straight) {
         // What goes straight on stays a candidate for light sampling at the event before.
         leave_receptor(path);
-        keep_smooth(path, b.event);
         update_mis(path, mis, s.material, b, event.next_pdf_reverse, catch_density(s, direction));
         path.pdf = (b.event & EVENT_DELTA) != 0u ? 0.0 : b.pdf;
         path.reference = p.position;

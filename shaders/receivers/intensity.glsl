@@ -79,8 +79,8 @@ ReceiverSample intensity_far(IntensityMeter r, vec3 direction, float film_aspect
     float y = clamp(row.upper ? 1.0 - across : across, 0.0, 0.9999);
     float turns = accurate_atan2(d.y, d.x) * (0.5 * INV_PI) + 0.5 / r.resolution.x;
     vec2 film = vec2(turns - floor(turns), (row.index + y) / r.resolution.y);
-    float disk = PI * square(SCENE_RADIUS);
-    return ReceiverSample(direction, INFINITY, film, intensity_density(r, row) / disk, disk, 1.0);
+    float disk = PI * square(SCENE_RADIUS), density = intensity_density(r, row);
+    return ReceiverSample(direction, INFINITY, film, density / disk, disk, density);
 }
 
 float intensity_footprint(IntensityMeter r, vec3 point, float film_aspect, out float slope) {

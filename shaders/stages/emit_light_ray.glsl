@@ -3,7 +3,6 @@
 #include "features/dispersion.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
-#include "features/far_receivers.glsl"
 #include "features/recording.glsl"
 #include "features/start_media.glsl"
 #include "interfaces/light_source.glsl"
@@ -28,7 +27,6 @@ Path emit_light_ray(uint index) {
     path.depth = 0u;
     path.flags = PATH_STARTS;
     path.vertices = uvec2(NO_RECORD, 0u);
-    start_smooth(path, ray.is_delta);
     start_hero(path, sample_seed(path.random));
     start_stokes(path, light);
     start_mode(path);

@@ -1,19 +1,21 @@
 // One event of a forward path: what the ray meets is crossed, connected to the receiver, stored, and scattered from.
+#include "features/far_receivers.glsl"
 #include "features/meeting.glsl"
 #include "lib/events.glsl"
 #include "stages/arrive.glsl"
 
-// The ray that brings light from the point to the receiver.
-ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, ReceiverSample r, Scattering pair,
+// The ray that brings light from the point to the receiver of a view.
+ShadowRay connect_receiver(Path path, SurfacePoint p, ScatteringPoint s, View view, ReceiverSample r, Scattering pair,
                            VertexMis mis) {
     float frame = frame_probability(s, -path.direction, r.direction);
     if (is_black(pair.value) || !is_seen_from(s, r.direction) || !(frame > 0.0)) return no_shadow_ray();
-    float importance = r.density * pixel_count() / r.pdf;  // of one pixel
+    float importance = r.density * pixel_count(view) / (r.pdf * view.share);  // of one pixel
     float others = others_of_receiver_sample(path, s, r.direction, importance, pair, mis);
+    if (is_far(view.receiver)) others += pair.pdf * frame / r.pdf;  // the light escapes that way
     Spectrum contribution = path.throughput * pair.value * (adjoint_correction(s, -path.direction, r.direction) / frame *
                                                             importance * r.weight * forward_pass.path_flux);
     ShadowRay shadow = shadow_ray(path, p, s, pair, r.direction, r.distance, contribution, others);
-    shadow.target = pixel_of(r.film);
+    shadow.target = pixel_of(view, r.film);
     return shadow;
 }
 
@@ -31,11 +33,14 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
     if (!is_delta && !a.caught) store_vertex(path, path_index, p, s, hit, mis);
     // connect_receiver, scatter_surfaces
     ReceiverSample r = no_receiver_sample();
-    if (!is_delta && is_for_receiver(a.caught)) r = receiver_connect(forward_pass.receiver, p.position, sample_2d(path.random), film_aspect());
+    uint v = NO_RECORD;
+    if (!is_delta) v = a.caught ? receptor_ahead(path) : choose_view(path.random);
+    View view = views[v == NO_RECORD ? 0u : v];
+    if (v != NO_RECORD) r = receiver_connect(view.receiver, p.position, sample_2d(path.random), film_aspect(view));
     vec3 wi = r.direction * s.frame;
     SurfaceEvent event = scattering_event(s, wi, wi, 1u, sample_3d(path.random));
     if (r.pdf > 0.0 && is_on_one_side(s, r.direction, wi))
-        shadow = connect_receiver(path, p, s, r, event.pair, mis);
+        shadow = connect_receiver(path, p, s, view, r, event.pair, mis);
     RETURN_IF_CAUGHT(a, path, shadow)
     kind = event.next.event;
     return follow_sample(path, p, s, event, mis);

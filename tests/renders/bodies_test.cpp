@@ -151,8 +151,9 @@ TEST_CASE("paths start among the bodies that hold their start, whose faces may c
     light(3, 0.4, 0, true), light(7, 0.3, 0, false);
     s.perspective(1, at(0.75, 0, 0));
     Scene scene = compile_test_scene(s.import());
-    StartMedia media(test_device(), scene, true);
-    media.find(scene.receivers[0].ref, 1);
+    const Views views(test_device(), scene, {{scene.receivers[0].ref, 1, 1}});
+    StartMedia media(test_device(), scene, views, true);
+    media.find();
     struct Surroundings {  // twin of the struct in shaders/features/bodies.glsl
         uint32_t medium, outer;
         glm::uvec2 counts;

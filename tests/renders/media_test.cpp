@@ -85,8 +85,9 @@ TEST_CASE("paths start in the medium around them, by closed boundaries, nested, 
 
     Scene scene = compile_test_scene(s.import());
     const uint32_t lights = uint32_t(scene.lights);
-    StartMedia of_all(test_device(), scene, true);
-    of_all.find(scene.receivers[0].ref, 1);
+    const Views views(test_device(), scene, {{scene.receivers[0].ref, 1, 1}});
+    StartMedia of_all(test_device(), scene, views, true);
+    of_all.find();
     const auto media = of_all.buffer().read_array<uint32_t>(1 + 2 * lights);
     const auto materials = scene.buffers.at("Materials").read_array<MaterialRecord>(scene.materials);
     const auto medium = [&](int material) {
@@ -100,8 +101,8 @@ TEST_CASE("paths start in the medium around them, by closed boundaries, nested, 
         CHECK(media[3 + 2 * i] == medium(p.front[i]));
         CHECK(media[4 + 2 * i] == medium(p.back[i]));
     }
-    StartMedia of_receiver(test_device(), scene, false);
-    of_receiver.find(scene.receivers[0].ref, 1);
+    StartMedia of_receiver(test_device(), scene, views, false);
+    of_receiver.find();
     CHECK(of_receiver.buffer().read_array<uint32_t>(1)[0] == medium(glass));
 }
 
