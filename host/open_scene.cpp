@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <sstream>
 
 #include "host/error.h"
 #include "host/gltf/gltf.h"
+#include "host/render/views.h"
 #include "host/scene/scene_files.h"
 
 namespace etendue {
@@ -57,6 +59,31 @@ const Receiver& choose_receiver(const Scene& scene, const SceneChoice& choice) {
     }
     fail_input("--receiver {}: no such receiver in {}; there are: {}", choice.receiver, choice.scene.string(),
                names);
+}
+
+std::vector<const Receiver*> choose_receivers(const Scene& scene, const SceneChoice& choice) {
+    const auto is_name = [&](const Receiver& receiver) { return receiver.name == choice.receiver; };
+    const bool is_one = std::any_of(scene.receivers.begin(), scene.receivers.end(), is_name);
+    std::vector<const Receiver*> chosen;
+    if (choice.receiver == "all" && !is_one) {
+        for (const Receiver& receiver : scene.receivers) chosen.push_back(&receiver);
+    } else if (choice.receiver.find(',') == std::string::npos || is_one) {
+        chosen.push_back(&choose_receiver(scene, choice));
+    } else {
+        std::istringstream names(choice.receiver);
+        SceneChoice one = choice;
+        while (std::getline(names, one.receiver, ',')) {
+            if (one.receiver.empty()) fail_input("--receiver {}: a name is empty", choice.receiver);
+            chosen.push_back(&choose_receiver(scene, one));
+            if (std::count(chosen.begin(), chosen.end(), chosen.back()) > 1)
+                fail_input("--receiver {}: {} stands there twice", choice.receiver, one.receiver);
+        }
+    }
+    if (chosen.empty()) fail_input("{}: the scene has no camera and no receiver", choice.scene.string());
+    if (chosen.size() > most_views)
+        fail_input("--receiver {}: {} receivers; allowed: 1 to {} in one run", choice.receiver, chosen.size(),
+                   most_views);
+    return chosen;
 }
 
 std::string receiver_unit(const Receiver& receiver) {

@@ -26,6 +26,8 @@ SceneOptions scene_options(const SceneChoice& choice);
 
 // The receiver of that name, else the first.
 const Receiver& choose_receiver(const Scene& scene, const SceneChoice& choice);
+// The receivers whose names stand there, separated by commas; all of them for "all"; else the first.
+std::vector<const Receiver*> choose_receivers(const Scene& scene, const SceneChoice& choice);
 
 // Of its pixels: "lx", "cd"; of cameras "cd/m²".
 std::string receiver_unit(const Receiver& receiver);

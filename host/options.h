@@ -25,7 +25,7 @@ struct SceneChoice {
     std::string variant;                // of the scene's materials; empty = none
     std::optional<double> at;           // seconds: the moment of the scene's animations; none = as it stands
     bool allow_class_files = false;     // code that the scene brings along may run
-    std::string receiver;               // name; empty = the first of the scene
+    std::string receiver;               // name; render: names, or "all"; empty = the first of the scene
     std::string device;                 // name, part of one, or index; empty = the best there is
     ColorMode color = ColorMode::automatic;
     PolarizationMode polarization = PolarizationMode::automatic;

@@ -21,7 +21,7 @@ ChooseMeanwhile::ChooseMeanwhile(Device& device, Scene& scene, const RenderOptio
                                  const RenderSettings& settings, const Receiver& receiver)
     : device_(device), scene_(scene), settings_(settings) {
     if (settings.choice || settings.algorithm != Algorithm::automatic) return;
-    settings_.choice = choose_without_pilot(device, scene);
+    settings_.choice = choose_without_pilot(device, scene, all_views(settings));
     if (settings_.choice) return;
     const double paths = double(settings.width) * settings.height * double(options.passes.value_or(0));
     if (options.passes && !deserves_pilot(paths)) {

@@ -13,9 +13,10 @@ namespace {
 const std::vector<std::string> seen_channels = {"albedo.R", "albedo.G", "albedo.B", "normal.X",
                                                 "normal.Y", "normal.Z", "depth.Z"};
 
-FilmShape shape_of(const nlohmann::json& identity) {
+// Of each view.
+FilmShape shape_of(const nlohmann::json& identity, size_t view) {
     FilmShape shape;
-    const std::string size = identity.at("size");
+    const std::string size = identity.at("size").at(view);
     shape.width = uint32_t(std::stoul(size));
     shape.height = uint32_t(std::stoul(size.substr(size.find('x') + 1)));
     shape.merging = identity.at("merging");
@@ -35,24 +36,44 @@ std::span<ExactSum> sums_of(Checkpoint& checkpoint, const std::filesystem::path&
 }
 
 struct Sums {
-    FilmShape shape;
+    std::vector<FilmShape> views;
     uint32_t bins;
     std::span<ExactSum> film, spectra;
 };
 Sums sums_of(Checkpoint& checkpoint, const std::filesystem::path& path) {
-    Sums sums{shape_of(checkpoint.identity), checkpoint.identity.at("spectral-bins"), {}, {}};
-    sums.film = sums_of(checkpoint, path, "film", sums.shape.sums());
-    if (sums.bins > 0)
-        sums.spectra = sums_of(
-            checkpoint, path, "bins",
-            spectral_sums(uint64_t(sums.shape.width) * sums.shape.height, sums.bins, sums.shape.layers()));
+    Sums sums{{}, checkpoint.identity.at("spectral-bins"), {}, {}};
+    uint64_t film = 0, spectra = 0;
+    for (size_t v = 0; v < checkpoint.identity.at("size").size(); ++v) {
+        const FilmShape& shape = sums.views.emplace_back(shape_of(checkpoint.identity, v));
+        film += shape.sums();
+        if (sums.bins > 0) spectra += spectral_sums(shape.pixels(), sums.bins, shape.layers());
+    }
+    sums.film = sums_of(checkpoint, path, "film", film);
+    if (sums.bins > 0) sums.spectra = sums_of(checkpoint, path, "bins", spectra);
     return sums;
 }
+
+std::string seen_name(size_t view) { return view == 0 ? "seen" : fmt::format("seen {}", view); }
 
 nlohmann::json united(const nlohmann::json& a, const nlohmann::json& b) {
     std::set<std::string> all = a.get<std::set<std::string>>();
     all.merge(b.get<std::set<std::string>>());
     return all;
+}
+
+std::map<std::string, Attribute> attributes(const Checkpoint& checkpoint, size_t view) {
+    std::string devices;
+    for (const auto& device : checkpoint.about.at("devices"))
+        devices += (devices.empty() ? "" : "; ") + device.get<std::string>();
+    return {{"pixelUnit", checkpoint.identity.at("unit").at(view).get<std::string>()},
+            {"receiver", checkpoint.identity.at("receiver").at(view).get<std::string>()},
+            {"seed", checkpoint.identity.at("seed").get<double>()},
+            {"passes", double(checkpoint.passes.count())},
+            {"rays", double(all_rays(counters_from_json(checkpoint.about.at("counters"))))},
+            {"seconds", checkpoint.about.at("seconds").get<double>()},
+            {"algorithm", checkpoint.identity.at("algorithm").get<std::string>()},
+            {"device", devices},
+            {"version", std::string(ETENDUE_VERSION)}};
 }
 
 }  // namespace
@@ -68,14 +89,22 @@ nlohmann::json source_hashes(const OpenedScene& opened, const SceneChoice& choic
 }
 
 nlohmann::json render_identity(const nlohmann::json& sources, const RenderOptions& options,
-                               const Scene& scene, const Receiver& receiver, const Renderer& renderer) {
+                               const Scene& scene, const std::vector<const Receiver*>& receivers,
+                               const Renderer& renderer) {
     const AlgorithmChoice& choice = renderer.choice();
     const FilmShape shape = renderer.film_shape();
     const bool forward = choice.algorithm != Algorithm::backward;
+    std::vector<std::string> names, sizes, units;
+    for (size_t v = 0; v < receivers.size(); ++v) {
+        const FilmView& view = renderer.views()[v];
+        names.push_back(receivers[v]->name);
+        sizes.push_back(fmt::format("{}x{}", view.width, view.height));
+        units.push_back(receiver_unit(*receivers[v]));
+    }
     nlohmann::json identity = sources;
-    identity.update({{"size", fmt::format("{}x{}", shape.width, shape.height)},
-                     {"receiver", receiver.name},
-                     {"unit", receiver_unit(receiver)},
+    identity.update({{"receiver", names},
+                     {"size", sizes},
+                     {"unit", units},
                      {"seed", options.seed},
                      {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
                      {"algorithm", algorithm_name(choice.algorithm)},
@@ -117,8 +146,9 @@ void restore(Checkpoint& checkpoint, const std::filesystem::path& path, Renderer
                       {sums.spectra.begin(), sums.spectra.end()}});
 }
 
-void keep_seen(Checkpoint& checkpoint, const Image& image) {
-    CheckpointArray& array = checkpoint.arrays.emplace_back(CheckpointArray{"seen", {}});
+void keep_seen(Checkpoint& checkpoint, const Image& image, size_t view) {
+    if (find_channel(image, seen_channels[0]) < 0) return;
+    CheckpointArray& array = checkpoint.arrays.emplace_back(CheckpointArray{seen_name(view), {}});
     for (const std::string& channel : seen_channels) {
         const auto bytes = std::as_bytes(plane(image, size_t(find_channel(image, channel))));
         array.bytes.insert(array.bytes.end(), bytes.begin(), bytes.end());
@@ -135,42 +165,41 @@ void merge(Checkpoint& all, Checkpoint& part, const std::filesystem::path& path)
     all.about["counters"] = to_json(counters);
     all.about["devices"] = united(all.about.at("devices"), part.about.at("devices"));
     all.about["seconds"] = all.about.at("seconds").get<double>() + part.about.at("seconds").get<double>();
-    const auto is_seen = [](const CheckpointArray& array) { return array.name == "seen"; };
-    const auto seen = std::find_if(part.arrays.begin(), part.arrays.end(), is_seen);
-    if (seen != part.arrays.end() && std::none_of(all.arrays.begin(), all.arrays.end(), is_seen))
-        all.arrays.push_back(std::move(*seen));
+    for (CheckpointArray& array : part.arrays)
+        if (std::none_of(all.arrays.begin(), all.arrays.end(),
+                         [&](const CheckpointArray& other) { return other.name == array.name; }))
+            all.arrays.push_back(std::move(array));  // what pixels see
 }
 
-Developed develop(Checkpoint& checkpoint, const std::filesystem::path& path, bool aovs) {
+std::vector<Developed> develop(Checkpoint& checkpoint, const std::filesystem::path& path, bool aovs) {
     const Sums sums = sums_of(checkpoint, path);
-    Developed developed{develop_film(sums.shape, sums.film, checkpoint.passes, aovs),
-                        film_relative_error(sums.shape, sums.film, checkpoint.passes)};
-    Image& image = developed.image;
-    for (const CheckpointArray& array : checkpoint.arrays)
-        if (aovs && array.name == "seen") {
-            const auto* first = reinterpret_cast<const float*>(array.bytes.data());
-            for (size_t c = 0; c < seen_channels.size(); ++c)
-                add_channels(image, {seen_channels[c]},
-                             std::span(first + c * pixel_count(image), pixel_count(image)), 1);
+    std::vector<Developed> all;
+    size_t film = 0, spectra = 0;
+    for (size_t v = 0; v < sums.views.size(); ++v) {
+        const FilmShape& shape = sums.views[v];
+        const std::span<const ExactSum> pixels = sums.film.subspan(film, shape.sums());
+        film += pixels.size();
+        Developed& developed = all.emplace_back(
+            Developed{checkpoint.identity.at("receiver").at(v), develop_film(shape, pixels, checkpoint.passes, aovs),
+                                       film_relative_error(shape, pixels, checkpoint.passes)});
+        Image& image = developed.image;
+        for (const CheckpointArray& array : checkpoint.arrays)
+            if (aovs && array.name == seen_name(v)) {
+                const auto* first = reinterpret_cast<const float*>(array.bytes.data());
+                for (size_t c = 0; c < seen_channels.size(); ++c)
+                    add_channels(image, {seen_channels[c]},
+                                 std::span(first + c * pixel_count(image), pixel_count(image)), 1);
+            }
+        if (aovs && has_stokes(image)) add_polarization(image);
+        if (sums.bins > 0) {
+            const uint64_t bins = spectral_sums(shape.pixels(), sums.bins, shape.layers());
+            add_spectra(image, sums.spectra.subspan(spectra, bins), sums.bins, shape.layers(),
+                        checkpoint.passes.count());
+            spectra += bins;
         }
-    if (aovs && has_stokes(image)) add_polarization(image);
-    if (sums.bins > 0)
-        add_spectra(image, sums.spectra, sums.bins, sums.shape.layers(), checkpoint.passes.count());
-    return developed;
-}
-
-std::map<std::string, Attribute> image_attributes(const Checkpoint& checkpoint) {
-    std::string devices;
-    for (const auto& device : checkpoint.about.at("devices"))
-        devices += (devices.empty() ? "" : "; ") + device.get<std::string>();
-    return {{"pixelUnit", checkpoint.identity.at("unit").get<std::string>()},
-            {"seed", checkpoint.identity.at("seed").get<double>()},
-            {"passes", double(checkpoint.passes.count())},
-            {"rays", double(all_rays(counters_from_json(checkpoint.about.at("counters"))))},
-            {"seconds", checkpoint.about.at("seconds").get<double>()},
-            {"algorithm", checkpoint.identity.at("algorithm").get<std::string>()},
-            {"device", devices},
-            {"version", std::string(ETENDUE_VERSION)}};
+        image.attributes.merge(attributes(checkpoint, v));
+    }
+    return all;
 }
 
 }  // namespace etendue

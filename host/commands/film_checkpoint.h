@@ -14,15 +14,17 @@ nlohmann::json source_hashes(const OpenedScene& opened, const SceneChoice& choic
 // Everything that passes must agree on to be parts of one render: `sources` and what was asked for and
 // chosen. Devices are no part of it: what theirs make agrees within rounding.
 nlohmann::json render_identity(const nlohmann::json& sources, const RenderOptions& options,
-                               const Scene& scene, const Receiver& receiver, const Renderer& renderer);
+                               const Scene& scene, const std::vector<const Receiver*>& receivers,
+                               const Renderer& renderer);
 
 // The passes that a renderer has. `earlier`: Checkpoint::about of those that it went on from; empty = none.
 Checkpoint to_checkpoint(const nlohmann::json& identity, const Renderer& renderer, const Device& device,
                          const nlohmann::json& earlier);
 void restore(Checkpoint& checkpoint, const std::filesystem::path& path, Renderer& renderer);
 std::string device_text(const Device& device);  // as a checkpoint names it
-// Adds the layers of an image that tell what pixels see (Renderer::add_aovs), for merge to write them, too.
-void keep_seen(Checkpoint& checkpoint, const Image& image);
+// Adds the layers of a view's image that tell what pixels see (Renderer::add_aovs), if it has them, for merge to
+// write them, too.
+void keep_seen(Checkpoint& checkpoint, const Image& image, size_t view);
 
 // Adds the passes of another part of the same render, `path`. Both have been checked to be that, and to have
 // no pass in common.
@@ -31,10 +33,10 @@ void merge(Checkpoint& all, Checkpoint& part, const std::filesystem::path& path)
 // What a checkpoint's passes show, without a device: colours and spectra, and with `aovs` their errors and
 // the layers that it has of what pixels see.
 struct Developed {
-    Image image;
+    std::string receiver;
+    Image image;  // with its attributes, the command aside
     RelativeError error;
 };
-Developed develop(Checkpoint& checkpoint, const std::filesystem::path& path, bool aovs);
-std::map<std::string, Attribute> image_attributes(const Checkpoint& checkpoint);
+std::vector<Developed> develop(Checkpoint& checkpoint, const std::filesystem::path& path, bool aovs);
 
 }  // namespace etendue

@@ -104,15 +104,20 @@ void write_image(const MergeOptions& options, Checkpoint& all, const fs::path& f
         fail_input("--output {}: images are written as OpenEXR; the name must end in .exr",
                    options.output.string());
     if (options.output.empty() && options.stats.empty()) return;
-    Developed developed = develop(all, first, options.aovs);
-    told += ": " + text_of(developed.error);
-    if (!options.output.empty()) {
-        developed.image.attributes.merge(image_attributes(all));
-        developed.image.attributes["command"] = options.command_line;
-        outputs.write([&] { write_exr(options.output, developed.image); });
+    std::vector<Developed> developed = develop(all, first, options.aovs);
+    std::vector<std::string> names;
+    for (const Developed& view : developed) names.push_back(view.receiver);
+    const std::vector<fs::path> files = output_files(options.output, names);
+    RelativeError error = developed.front().error;
+    for (size_t v = 0; v < developed.size(); ++v) {
+        Developed& view = developed[v];
+        if (!(view.error.value() <= error.value())) error = view.error;
+        view.image.attributes["command"] = options.command_line;
+        if (!options.output.empty()) outputs.write([&] { write_exr(files[v], view.image); });
     }
+    told += ": " + text_of(error);
     if (!options.stats.empty())
-        outputs.write([&] { write_stats(options, all, {developed.error.value(), developed.error.bound()}); });
+        outputs.write([&] { write_stats(options, all, {error.value(), error.bound()}); });
 }
 
 void write_measurement(const MergeOptions& options, Checkpoint& all, const fs::path& first, Outputs& outputs,

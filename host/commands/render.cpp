@@ -32,8 +32,9 @@ constexpr uint32_t aov_samples = 16;       // primary rays a pixel for --aovs
 // Checkpoints of one run: what its passes belong to, and those that it went on from.
 class Checkpoints {
   public:
-    Checkpoints(const RenderOptions& options, const OpenedScene& opened, const Receiver& receiver)
-        : options_(options), opened_(opened), receiver_(receiver) {
+    Checkpoints(const RenderOptions& options, const OpenedScene& opened,
+                const std::vector<const Receiver*>& receivers)
+        : options_(options), opened_(opened), receivers_(receivers) {
         if (options.checkpoint.empty() && options.resume.empty()) return;
         sources_ = source_hashes(opened, options);
         if (!options.resume.empty()) resumed_ = read_checkpoint(options.resume);
@@ -60,21 +61,21 @@ class Checkpoints {
                                  options_.resume.string(), about_.at("devices").dump());
     }
     void drop_earlier() { about_ = nlohmann::json::object(); }
-    // `seen`: an image with the layers of what pixels see; null = none.
-    void save(const Renderer& renderer, const Image* seen = nullptr) const {
+    // `images`: of the views, some with the layers of what pixels see.
+    void save(const Renderer& renderer, const std::vector<Image>& images = {}) const {
         if (options_.checkpoint.empty()) return;
         Checkpoint checkpoint = to_checkpoint(identity(renderer), renderer, *opened_.device, about_);
-        if (seen) keep_seen(checkpoint, *seen);
+        for (size_t v = 0; v < images.size(); ++v) keep_seen(checkpoint, images[v], v);
         write_checkpoint(options_.checkpoint, checkpoint);
     }
 
   private:
     nlohmann::json identity(const Renderer& renderer) const {
-        return render_identity(sources_, options_, opened_.scene, receiver_, renderer);
+        return render_identity(sources_, options_, opened_.scene, receivers_, renderer);
     }
     const RenderOptions& options_;
     const OpenedScene& opened_;
-    const Receiver& receiver_;
+    const std::vector<const Receiver*>& receivers_;
     nlohmann::json sources_, about_ = nlohmann::json::object();
     std::optional<Checkpoint> resumed_;
 };
@@ -91,9 +92,8 @@ uint64_t passes_left(const RenderOptions& options, const Renderer& renderer) {
 
 }  // namespace
 
-int render_command(const RenderOptions& given) {
-    RenderOptions options = given;
-    for (const auto& path : {options.output, options.stats, options.checkpoint})
+int render_command(const RenderOptions& options) {
+    for (const auto& path : {options.stats, options.checkpoint})
         if (!path.empty()) check_writable(path);
     catch_interrupts();
     Progress progress;
@@ -104,29 +104,38 @@ int render_command(const RenderOptions& given) {
     Device& device = *opened.device;
     Scene& scene = opened.scene;
     for (const std::string& warning : scene.warnings) show_note(progress, "warning: " + warning);
-    const Receiver& receiver = choose_receiver(scene, options);
+    const std::vector<const Receiver*> receivers = choose_receivers(scene, options);
     if (scene.lights == 0)
         show_note(progress, fmt::format("warning: {}: the scene has no light: the image is black",
                                         options.scene.string()));
-    if (receiver.wants_stokes && !scene.features.polarization)
-        show_note(progress,
-                  fmt::format("warning: {} asks for Stokes vectors: without polarization there are none",
-                              receiver.name));
-    options.size = image_size(receiver, options);
 
     RenderSettings settings;
-    settings.width = options.size->width, settings.height = options.size->height;
-    settings.receiver = receiver.ref;
+    std::vector<std::string> names;
+    for (const Receiver* receiver : receivers) {
+        const ImageSize size = image_size(*receiver, options);
+        settings.beside.push_back({receiver->ref, size.width, size.height});
+        names.push_back(receiver->name);
+        settings.stokes |= receiver->wants_stokes;
+        if (receiver->wants_stokes && !scene.features.polarization)
+            show_note(progress,
+                      fmt::format("warning: {} asks for Stokes vectors: without polarization there are none",
+                                  receiver->name));
+    }
+    const FilmView first = settings.beside.front();
+    settings.beside.erase(settings.beside.begin());
+    settings.receiver = first.receiver, settings.width = first.width, settings.height = first.height;
+    const std::vector<std::filesystem::path> files = output_files(options.output, names);
+    for (const auto& file : files)
+        if (!file.empty()) check_writable(file);
     settings.algorithm = options.algorithm;
     settings.forward_paths = options.forward_paths.value_or(settings.forward_paths);
     settings.schedule = options.schedule;
     settings.vertex_bytes = options.vertex_bytes;
     settings.spectral_bins = options.spectral_bins;
-    settings.stokes = receiver.wants_stokes;
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
-    Checkpoints checkpoints(options, opened, receiver);
+    Checkpoints checkpoints(options, opened, receivers);
     settings.choice = checkpoints.choice();
-    ChooseMeanwhile chooses(device, scene, options, settings, receiver);
+    ChooseMeanwhile chooses(device, scene, options, settings, *receivers.front());
     std::unique_ptr<Renderer> renderer = chooses.make_renderer();
     renderer->begin_at(options.first_pass);
     if (const std::string note = checkpoints.restore(*renderer); !note.empty()) show_note(progress, note);
@@ -217,30 +226,34 @@ int render_command(const RenderOptions& given) {
     finish_progress(progress, status);
 
     Outputs outputs;
-    Image image = renderer->develop(options.aovs);
-    const bool sees_things = options.aovs && receiver.info->pixel_unit.empty();  // a camera does
-    if (sees_things) renderer->add_aovs(image, aov_samples);
-    image.attributes["pixelUnit"] = receiver_unit(receiver);
-    if (options.aovs && has_stokes(image)) add_polarization(image);
-    renderer->add_spectra(image);
-    image.attributes.merge(std::map<std::string, Attribute>{
-        {"scene", options.scene.string()},
-        {"command", options.command_line},
-        {"seed", double(options.seed)},
-        {"passes", double(renderer->passes())},
-        {"rays", double(all_rays(renderer->counters()))},
-        {"seconds", renderer->seconds()},
-        {"algorithm", std::string(algorithm_name(renderer->choice().algorithm))},
-        {"device", device.description.name},
-        {"driver", device.description.driver},
-        {"version", std::string(ETENDUE_VERSION)}});
-    if (!options.output.empty()) outputs.write([&] { write_exr(options.output, image); });
+    std::vector<Image> images;
+    for (size_t v = 0; v < receivers.size(); ++v) {
+        Image& image = images.emplace_back(renderer->develop(options.aovs, v));
+        const bool sees_things = receivers[v]->info->pixel_unit.empty();  // a camera does
+        if (options.aovs && sees_things) renderer->add_aovs(image, aov_samples, v);
+        image.attributes["pixelUnit"] = receiver_unit(*receivers[v]);
+        if (options.aovs && has_stokes(image)) add_polarization(image);
+        renderer->add_spectra(image, v);
+        image.attributes.merge(std::map<std::string, Attribute>{
+            {"scene", options.scene.string()},
+            {"receiver", receivers[v]->name},
+            {"command", options.command_line},
+            {"seed", double(options.seed)},
+            {"passes", double(renderer->passes())},
+            {"rays", double(all_rays(renderer->counters()))},
+            {"seconds", renderer->seconds()},
+            {"algorithm", std::string(algorithm_name(renderer->choice().algorithm))},
+            {"device", device.description.name},
+            {"driver", device.description.driver},
+            {"version", std::string(ETENDUE_VERSION)}});
+        if (!options.output.empty()) outputs.write([&] { write_exr(files[v], image); });
+    }
     if (!options.stats.empty())
         outputs.write([&] {
             write_stats(options.stats, options, device, scene, *renderer, renderer->relative_error(),
                         setup_seconds);
         });
-    outputs.write([&] { checkpoints.save(*renderer, sees_things ? &image : nullptr); });
+    outputs.write([&] { checkpoints.save(*renderer, images); });
     if (renderer->counters().non_finite)
         show_note(progress, fmt::format("warning: {} samples were not finite and count as black",
                                         renderer->counters().non_finite));

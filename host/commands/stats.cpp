@@ -41,15 +41,21 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
                          {"dispatches", t.dispatches},
                          {"rays_per_second", per_second(rays, t.seconds)}};
     const AlgorithmChoice& choice = renderer.choice();
-    const double paths = double(renderer.passes()) * options.size->width * options.size->height;
+    nlohmann::json films = nlohmann::json::array();
+    for (const FilmView& view : renderer.views())
+        for (const Receiver& receiver : scene.receivers)
+            if (receiver.ref == view.receiver)
+                films.push_back({{"receiver", receiver.name}, {"width", view.width}, {"height", view.height}});
+    const double paths = double(renderer.passes() * pixel_count(renderer.views()));
     nlohmann::json json = {{"scene", options.scene.string()},
                            {"command", options.command_line},
                            {"version", ETENDUE_VERSION},
                            {"device", device.description.name},
                            {"driver", device.description.driver},
                            {"seed", options.seed},
-                           {"width", options.size->width},
-                           {"height", options.size->height},
+                           {"width", renderer.views().front().width},
+                           {"height", renderer.views().front().height},
+                           {"films", films},
                            {"passes", renderer.passes()},
                            {"backward_rays", c.rays},
                            {"shadow_rays", c.shadow_rays},

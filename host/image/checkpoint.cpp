@@ -140,7 +140,9 @@ void require_identity(const std::filesystem::path& path, const nlohmann::json& f
     keys.update(found);
     for (const auto& [key, any] : keys.items()) {
         const auto text = [&key = key](const nlohmann::json& identity) {
-            return identity.contains(key) ? identity[key].dump() : "none";
+            if (!identity.contains(key)) return std::string("none");
+            const nlohmann::json& value = identity[key];
+            return value.is_array() && value.size() == 1 ? value[0].dump() : value.dump();
         };
         if (text(found) != text(wanted))
             fail_input("{}: this checkpoint is of another render: its {} is {}, {} {}", path.string(), key,

@@ -1,10 +1,18 @@
 // The files that one run leaves behind: one that cannot be written does not cost the others.
 #pragma once
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "host/error.h"
 
 namespace etendue {
+
+// Names of files, all different, for things of these names: letters, digits, - and _.
+std::vector<std::string> file_stems(const std::vector<std::string>& names);
+// The files of a picture of each thing: `output` itself for a single one, else OUT.NAME.exr.
+std::vector<std::filesystem::path> output_files(const std::filesystem::path& output,
+                                                const std::vector<std::string>& names);
 
 class Outputs {
   public:

@@ -9,8 +9,6 @@
 namespace etendue {
 namespace {
 
-// Fewer leave the device idle.
-constexpr double least_forward_paths = 1 << 14;  // a pass
 // That none of which arrives says: less than 3 in a million do.
 constexpr double probing_paths = 1 << 20;
 
@@ -38,36 +36,20 @@ std::vector<RenderSettings> settings_of(const RenderSettings& common, const std:
 
 }  // namespace
 
-AlgorithmChoice choose_for_meters(Device& device, Scene& scene,
-                                  const std::vector<const Receiver*>& receivers) {
-    bool any_far = false;
-    double pixels = 0;
-    for (const Receiver* receiver : receivers) {
-        any_far |= receiver->info->is_far;
-        pixels += double(receiver->columns) * receiver->rows;
-    }
-    if (!any_far)
-        if (const auto choice = choose_without_pilot(device, scene)) return *choice;
-    AlgorithmChoice choice;
-    choice.algorithm = Algorithm::bidirectional;
-    choice.forward_paths = std::max(1.0, least_forward_paths / pixels);
-    choice.reason = any_far ? "points and beams reach meters far away by forward rays alone"
-                            : "backward rays alone may miss light";
-    return choice;
-}
-
 MeasurementRun::MeasurementRun(Device& device, Scene& scene, const std::vector<const Receiver*>& receivers,
                                const RenderSettings& common)
     : device_(device), scene_(scene), settings_(common) {
     measurement_.power = scene.power;
-    if (settings_.algorithm == Algorithm::automatic)
-        settings_.choice = choose_for_meters(device, scene, receivers);
     std::vector<FilmView> views;
     for (const Receiver* receiver : receivers) {
         views.push_back({receiver->ref, receiver->columns, receiver->rows});
         Readings& readings = measurement_.meters.emplace_back();
         readings.meter = describe_meter(device, scene, *receiver);
         readings.sums.resize(readings.meter.pixels() * replicates);
+    }
+    if (settings_.algorithm == Algorithm::automatic) {
+        const auto sure = choose_without_pilot(device, scene, views);
+        settings_.choice = sure ? *sure : choose_both_ways(views, "backward rays alone may miss light");
     }
     for (const RenderSettings& settings : settings_of(settings_, views))
         renderers_.push_back(std::make_unique<Renderer>(device, scene, settings));

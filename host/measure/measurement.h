@@ -17,11 +17,6 @@ struct Measurement {
     double power = 0;    // of the scene's lights, lm
 };
 
-// What `auto` comes to for meters: backward rays where they find all light, else both ways; no pilot is run,
-// so that every machine chooses the same.
-AlgorithmChoice choose_for_meters(Device& device, Scene& scene,
-                                  const std::vector<const Receiver*>& receivers);
-
 // Adds passes to a measurement.
 class MeasurementRun {
   public:

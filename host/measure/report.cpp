@@ -105,17 +105,8 @@ IntensityDistribution intensity_distribution(const Readings& readings) {
 
 std::vector<std::string> file_names(const Measurement& measurement) {
     std::vector<std::string> names;
-    for (const Readings& readings : measurement.meters) {
-        std::string name = readings.meter.name;
-        for (char& c : name)
-            if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
-        if (name.empty()) name = "meter";
-        std::string unique = name;
-        for (int i = 2; std::find(names.begin(), names.end(), unique) != names.end(); ++i)
-            unique = fmt::format("{}-{}", name, i);
-        names.push_back(unique);
-    }
-    return names;
+    for (const Readings& readings : measurement.meters) names.push_back(readings.meter.name);
+    return file_stems(names);
 }
 
 std::vector<std::string> write_report(const ReportOptions& options, const Measurement& measurement,

@@ -300,12 +300,12 @@ void PreviewWorker::restart(uint32_t step) {
 
 void PreviewWorker::begin_pilot(const PreviewRequest& request) {
     if (choice_ || pilot_) return;
-    choice_ = choose_without_pilot(*device_, *scene_);
+    const uint32_t receiver = std::min(request.receiver, uint32_t(scene_->receivers.size() - 1));
+    const RenderSettings settings = settings_for(*scene_, receiver, request);
+    choice_ = choose_without_pilot(*device_, *scene_, all_views(settings));
     if (choice_) return;
     say(pilot_message);
-    const uint32_t receiver = std::min(request.receiver, uint32_t(scene_->receivers.size() - 1));
-    pilot_ = std::make_unique<BackgroundPilot>(options_, settings_for(*scene_, receiver, request), receiver,
-                                               scene_->receivers[receiver]);
+    pilot_ = std::make_unique<BackgroundPilot>(options_, settings, receiver, scene_->receivers[receiver]);
 }
 
 void PreviewWorker::look_at_pilot() {

@@ -18,6 +18,8 @@ constexpr uint32_t pilot_passes = 64;
 // clearly.
 constexpr double clear_win = 0.5;
 constexpr double false_alarm = 1e-3;                   // of calling images different that are not
+// A pass of fewer leaves the device idle.
+constexpr double least_forward_paths = 1 << 14;
 constexpr double most_paths = 16, least_paths = 0.25;  // forward paths a pixel
 
 struct Pilot {
@@ -75,17 +77,31 @@ bool deserves_pilot(double backward_paths) {
     return 10.0 * 3 * pilot_passes * pilot_pixels * pilot_pixels <= backward_paths;
 }
 
-std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene) {
+AlgorithmChoice choose_both_ways(const std::vector<FilmView>& views, std::string reason) {
+    AlgorithmChoice choice;
+    choice.algorithm = Algorithm::bidirectional;
+    choice.forward_paths = std::max(1.0, least_forward_paths / double(pixel_count(views)));
+    choice.reason = std::move(reason);
+    return choice;
+}
+
+std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene,
+                                                    const std::vector<FilmView>& views) {
     AlgorithmChoice choice;
     if (!(scene.power > 0)) {
         choice.reason = "no light";
         return choice;
     }
+    for (const Receiver& receiver : scene.receivers)
+        for (const FilmView& view : views)
+            if (receiver.ref == view.receiver && receiver.info->is_far)
+                return choose_both_ways(views, "from far away backward rays seldom hit a lamp");
     const bool narrow = find_narrow_materials(device, scene);
     choice.reason = "no surface is smooth or nearly so";
     if (!narrow && !scene.features.scattering) return choice;
     const CompactLights lights = find_compact_lights(device, scene);
     if (!narrow && !lights.points) return choice;
+    if (lights.any && views.size() > 1) return choose_both_ways(views, "backward rays alone may miss light");
     if (lights.any) return {};
     choice.reason = "no light is compact";
     return choice;
@@ -93,7 +109,8 @@ std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene
 
 AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings,
                                  const Interrupt& interrupt) {
-    if (const auto choice = choose_without_pilot(device, scene)) return *choice;
+    if (const auto choice = choose_without_pilot(device, scene, all_views(settings)))
+        return *choice;
     const auto start = std::chrono::steady_clock::now();
     const auto pilot = [&](Algorithm algorithm, double paths) {
         return run_pilot(device, scene, settings, algorithm, paths, interrupt);

@@ -22,7 +22,10 @@ AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSetti
 // Whether a render of so many backward paths, one a pixel and pass, is large enough for a pilot: the pilot's
 // paths are at most a tenth of them.
 bool deserves_pilot(double backward_paths);
-// The choice where it takes no pilot.
-std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene);
+// The choice where it takes no pilot: for several receivers, and for those far away, there is none.
+std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene,
+                                                    const std::vector<FilmView>& views);
+// Both ways for want of a pilot, with so many forward paths that the device is busy.
+AlgorithmChoice choose_both_ways(const std::vector<FilmView>& views, std::string reason);
 
 }  // namespace etendue

@@ -24,6 +24,11 @@ std::string text_of(const Executable& program, const std::string& file) {
     return read_text(program.folder / file);
 }
 
+std::vector<float> plane_of(const Image& image) {
+    const auto green = plane(image, size_t(find_channel(image, "G")));
+    return {green.begin(), green.end()};
+}
+
 }  // namespace
 
 TEST_CASE("a report has the figures, images, tables and a page of every meter") {
@@ -114,4 +119,53 @@ TEST_CASE("what cannot be measured is said in one line") {
     CHECK(refusal({"s.gltf", "-o", "out", "--points", "7"}).find("5, 9, 13") != std::string::npos);
     CHECK(refusal({"s.gltf", "-o", "out", "--error", "0.1", "--error-of", "best"}).find("mean or worst") !=
           std::string::npos);
+}
+
+TEST_CASE("one run renders several receivers, and its parts merge to the same images") {
+    Executable program;
+    write_text(program.folder / "s.gltf", scene_text);
+    const auto render = [&](std::vector<std::string> more) {
+        std::vector<std::string> words = {"render", "s.gltf", "--receiver", "plane,gonio,away", "--seed", "3",
+                                          "--algorithm", "bidirectional"};
+        words.insert(words.end(), more.begin(), more.end());
+        return program.run(words);
+    };
+    const Run whole = render({"-o", "whole.exr", "--passes", "64", "--stats", "stats.json"});
+    CAPTURE(whole.err);
+    REQUIRE(whole.code == 0);
+    CHECK(!std::filesystem::exists(program.folder / "whole.exr"));
+    const Image plane = read_exr(program.folder / "whole.plane.exr"), gonio = read_exr(program.folder / "whole.gonio.exr");
+    CHECK(plane.width == 8);
+    CHECK(gonio.height == 7);
+    CHECK(std::get<std::string>(plane.attributes.at("pixelUnit")) == "lx");
+    CHECK(std::get<std::string>(gonio.attributes.at("pixelUnit")) == "cd");
+    CHECK(std::get<std::string>(gonio.attributes.at("receiver")) == "gonio");
+    double lux = 0, candela = 0;
+    for (float x : plane_of(plane)) lux += x / 64;
+    for (float x : plane_of(gonio)) candela += x / 56;
+    CHECK(std::fabs(lux - 201.35792) < 1);  // 1000 cd 2 m above 2 x 2 m
+    CHECK(std::fabs(candela - 1000) < 60);
+    for (float x : plane_of(read_exr(program.folder / "whole.away.exr"))) CHECK(x == 0);
+    for (const char* receiver : {"plane", "gonio", "away"})
+        CHECK(text_of(program, "stats.json").find(receiver) != std::string::npos);
+
+    REQUIRE(render({"--passes", "0:40", "--checkpoint", "a.etd"}).code == 0);
+    REQUIRE(render({"--passes", "40:64", "--checkpoint", "b.etd"}).code == 0);
+    REQUIRE(program.run({"merge", "a.etd", "b.etd", "-o", "merged.exr"}).code == 0);
+    for (const char* receiver : {"plane", "gonio", "away"}) {
+        CAPTURE(receiver);
+        CHECK(read_exr(program.folder / fmt::format("merged.{}.exr", receiver)).values ==
+              read_exr(program.folder / fmt::format("whole.{}.exr", receiver)).values);
+    }
+    const Run fewer = program.run({"render", "s.gltf", "--receiver", "plane", "--passes", "64", "--resume", "a.etd"});
+    CHECK(fewer.code == 2);
+    CHECK(fewer.error_lines() == 1);
+    for (const char* names : {"plane,plane", "plane,nobody", "plane,,gonio"}) {
+        CAPTURE(names);
+        const Run bad = program.run({"render", "s.gltf", "--receiver", names, "--passes", "1"});
+        CHECK(bad.code == 2);
+        CHECK(bad.error_lines() == 1);
+    }
+    REQUIRE(program.run({"render", "s.gltf", "--receiver", "all", "--passes", "1", "-o", "all.exr"}).code == 0);
+    CHECK(std::filesystem::exists(program.folder / "all.away.exr"));
 }
