@@ -13,8 +13,8 @@ struct OpenedScene {
     std::unique_ptr<Device> device;
     Scene scene;
     std::vector<std::filesystem::path> files;  // that it was read from, the scene file first
-    std::vector<std::string> variants;  // of its materials
-    double animation_seconds = 0;       // 0 = it has none
+    std::vector<std::string> variants;         // of its materials
+    double animation_seconds = 0;              // 0 = it has none
 };
 
 // Fails with one line for what is wrong in the scene or its files, and where there is no such device.

@@ -33,7 +33,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     error->option_text("E");
     add_shared(*render, options, arguments.shared,
                {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
-                {"receiver", "Cameras and meters to render in one run, by name, or all (default: the scene's first)"},
+                {"receiver",
+                 "Cameras and meters to render in one run, by name, or all (default: the scene's first)"},
                 {"variant", "Of the scene's materials, as inspect lists them (default: none)"},
                 {"at", "Moment of the scene's animations (default: as its nodes stand)"},
                 {"environment", "Latitude-longitude image for the scene's surroundings"},

@@ -179,9 +179,9 @@ std::vector<Developed> develop(Checkpoint& checkpoint, const std::filesystem::pa
         const FilmShape& shape = sums.views[v];
         const std::span<const ExactSum> pixels = sums.film.subspan(film, shape.sums());
         film += pixels.size();
-        Developed& developed = all.emplace_back(
-            Developed{checkpoint.identity.at("receiver").at(v), develop_film(shape, pixels, checkpoint.passes, aovs),
-                                       film_relative_error(shape, pixels, checkpoint.passes)});
+        Developed& developed = all.emplace_back(Developed{
+            checkpoint.identity.at("receiver").at(v), develop_film(shape, pixels, checkpoint.passes, aovs),
+            film_relative_error(shape, pixels, checkpoint.passes)});
         Image& image = developed.image;
         for (const CheckpointArray& array : checkpoint.arrays)
             if (aovs && array.name == seen_name(v)) {

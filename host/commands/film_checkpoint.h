@@ -22,8 +22,8 @@ Checkpoint to_checkpoint(const nlohmann::json& identity, const Renderer& rendere
                          const nlohmann::json& earlier);
 void restore(Checkpoint& checkpoint, const std::filesystem::path& path, Renderer& renderer);
 std::string device_text(const Device& device);  // as a checkpoint names it
-// Adds the layers of a view's image that tell what pixels see (Renderer::add_aovs), if it has them, for merge to
-// write them, too.
+// Adds the layers of a view's image that tell what pixels see (Renderer::add_aovs), if it has them, for merge
+// to write them, too.
 void keep_seen(Checkpoint& checkpoint, const Image& image, size_t view);
 
 // Adds the passes of another part of the same render, `path`. Both have been checked to be that, and to have

@@ -45,7 +45,8 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
     for (const FilmView& view : renderer.views())
         for (const Receiver& receiver : scene.receivers)
             if (receiver.ref == view.receiver)
-                films.push_back({{"receiver", receiver.name}, {"width", view.width}, {"height", view.height}});
+                films.push_back(
+                    {{"receiver", receiver.name}, {"width", view.width}, {"height", view.height}});
     const double paths = double(renderer.passes() * pixel_count(renderer.views()));
     nlohmann::json json = {{"scene", options.scene.string()},
                            {"command", options.command_line},

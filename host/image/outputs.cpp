@@ -26,7 +26,8 @@ std::vector<std::filesystem::path> output_files(const std::filesystem::path& out
     if (names.size() == 1 || output.empty()) return std::vector(names.size(), output);
     std::vector<std::filesystem::path> files;
     for (const std::string& stem : file_stems(names))
-        files.push_back(output.parent_path() / (output.stem().string() + "." + stem + output.extension().string()));
+        files.push_back(output.parent_path() /
+                        (output.stem().string() + "." + stem + output.extension().string()));
     return files;
 }
 

@@ -10,7 +10,7 @@ namespace etendue {
 
 struct Measurement {
     std::vector<Readings> meters;
-    PassSet passes;      // whole sixteens (`replicates`)
+    PassSet passes;  // whole sixteens (`replicates`)
     RenderCounters counters;
     AlgorithmChoice choice;
     double seconds = 0;  // of rendering
@@ -40,7 +40,7 @@ class MeasurementRun {
   private:
     Device& device_;
     Scene& scene_;
-    RenderSettings settings_;  // that all meters have in common
+    RenderSettings settings_;                           // that all meters have in common
     std::vector<std::unique_ptr<Renderer>> renderers_;  // of most_views meters each, in their order
     Measurement measurement_;
 };

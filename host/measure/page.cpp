@@ -48,8 +48,8 @@ std::string ledger(const Measurement& measurement) {
 std::string meter_section(const ReportOptions& options, const Measurement& measurement,
                           const Readings& readings, const std::string& name) {
     const Meter& meter = readings.meter;
-    std::string html = fmt::format(
-        "<h2>{}</h2>\n<p>{} × {} pixels, {}.</p>\n", escaped(meter.name), meter.columns, meter.rows, meter.unit);
+    std::string html = fmt::format("<h2>{}</h2>\n<p>{} × {} pixels, {}.</p>\n", escaped(meter.name),
+                                   meter.columns, meter.rows, meter.unit);
     html += as_html(figure_table(figures_of(readings, options.points)));
     if (is_dark(readings))
         html +=

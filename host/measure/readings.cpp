@@ -29,9 +29,9 @@ Meter describe_meter(Device& device, Scene& scene, const Receiver& receiver) {
                 receiver.columns,
                 receiver.rows,
                 info.is_far,
-                info.is_far || info.has_receptor,
-                {}};
-    meter.places = pixel_places(device, scene, receiver, meter.columns, meter.rows);
+                false,
+                pixel_places(device, scene, receiver, receiver.columns, receiver.rows)};
+    meter.has_extent = (info.is_far || info.has_receptor) && meter.places.front().extent > 0;
     for (PixelPlace& place : meter.places) place.position += glm::vec3(scene.center);
     return meter;
 }

@@ -23,7 +23,7 @@ constexpr uint32_t replicates = 16;
 struct PixelPlace {
     glm::vec3 position;   // m, in the coordinates of the scene file
     glm::vec3 direction;  // unit, that light comes along at the middle; of an illuminance the meter's normal
-    float extent;         // what the pixel stands for: m² of a meter in a plane, sr of one far away
+    float extent;         // what the pixel stands for: m² of a meter in a plane, sr of one far away, else 0
 };
 
 struct Meter {

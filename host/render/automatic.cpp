@@ -17,7 +17,7 @@ constexpr uint32_t pilot_passes = 64;
 // Rare bright samples make a pilot a noisy judge, by a factor of two either way: forward rays must win
 // clearly.
 constexpr double clear_win = 0.5;
-constexpr double false_alarm = 1e-3;                   // of calling images different that are not
+constexpr double false_alarm = 1e-3;  // of calling images different that are not
 // A pass of fewer leaves the device idle.
 constexpr double least_forward_paths = 1 << 14;
 constexpr double most_paths = 16, least_paths = 0.25;  // forward paths a pixel
@@ -109,8 +109,7 @@ std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene
 
 AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings,
                                  const Interrupt& interrupt) {
-    if (const auto choice = choose_without_pilot(device, scene, all_views(settings)))
-        return *choice;
+    if (const auto choice = choose_without_pilot(device, scene, all_views(settings))) return *choice;
     const auto start = std::chrono::steady_clock::now();
     const auto pilot = [&](Algorithm algorithm, double paths) {
         return run_pilot(device, scene, settings, algorithm, paths, interrupt);

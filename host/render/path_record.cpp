@@ -180,11 +180,9 @@ std::vector<RecordedPath> PathRecorder::record(uint64_t pass, std::span<const ui
         for (const uint32_t i : indices.subspan(first, count))
             if (i >= paths_) fail_input("path {}: a pass has {} of them", i, paths_);
         indices_.write(&indices[first], uint64_t(count) * 4);
-        commands_.dispatch(kernel_, (count + kernel_.group_size() - 1) / kernel_.group_size(),
-                           {{"count", count},
-                            {"room", room_},
-                            {"pass", uint32_t(pass)},
-                            {"seed", settings_.seed}});
+        commands_.dispatch(
+            kernel_, (count + kernel_.group_size() - 1) / kernel_.group_size(),
+            {{"count", count}, {"room", room_}, {"pass", uint32_t(pass)}, {"seed", settings_.seed}});
         commands_.run();
         const auto counts = counts_.read_array<uint32_t>(count);
         for (uint32_t i = 0; i < count; ++i) {

@@ -45,9 +45,7 @@ void StartMedia::find() {
                         views_.count());
 }
 
-void StartMedia::find_of_receivers() {
-    ask(std::min(count_, views_.count()));
-}
+void StartMedia::find_of_receivers() { ask(std::min(count_, views_.count())); }
 
 void StartMedia::ask(uint32_t count) {
     if (count == 0) return;

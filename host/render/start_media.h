@@ -6,8 +6,8 @@
 
 namespace etendue {
 
-// RecordRefs: at the receivers of the views, and if `of_lights` in front of and behind each light. Empty where the scene
-// has no media.
+// RecordRefs: at the receivers of the views, and if `of_lights` in front of and behind each light. Empty
+// where the scene has no media.
 class StartMedia {
   public:
     // `views` live longer.

@@ -13,8 +13,7 @@ std::string Techniques::backward_defines() const {
         "#define FORWARD 0\n#define HAS_SPLATS {:d}\n#define FORWARD_ONLY {:d}\n#define BIDIRECTIONAL {:d}\n"
         "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n"
         "#define STOKES_IMAGE {:d}\n#define SEVERAL_VIEWS {:d}\n",
-        forward, forward && !bidirectional, bidirectional, connect, merge, beams, stokes,
-        several_views);
+        forward, forward && !bidirectional, bidirectional, connect, merge, beams, stokes, several_views);
 }
 
 std::string Techniques::forward_defines() const {

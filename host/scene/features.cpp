@@ -8,10 +8,12 @@ namespace etendue {
 
 Features Features::everything() {
     Features f;
-    f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.shading_normals = f.textures = true;
-    f.media = f.scattering = f.bending = f.interfaces = f.straight = f.coverage = f.emission_maps = f.twins = f.light_tree = true;
+    f.triangles = f.shapes = f.instances = f.vertex_attributes = f.normal_maps = f.shading_normals =
+        f.textures = true;
+    f.media = f.scattering = f.bending = f.interfaces = f.straight = f.coverage = f.emission_maps = f.twins =
+        f.light_tree = true;
     f.general_mueller = f.body_mueller = f.crystals = true;
-    f.apertures = f.far_receivers = f.receptors = true;
+    f.apertures = f.far_receivers = f.receptors = f.receptor_shapes = true;
     f.body_count = most_bodies;
     f.light_count = 16;
     f.infinite_light_count = 2;
@@ -52,6 +54,7 @@ std::string Features::defines() const {
     define("HAS_APERTURES", apertures);
     define("HAS_FAR_RECEIVERS", far_receivers);
     define("HAS_RECEPTORS", receptors);
+    define("HAS_RECEPTOR_SHAPES", receptor_shapes);
     if (receptors) define("RECEPTOR_MATERIAL", receptor_material);
     define("HAS_DISPERSION", spectral && dispersion);
     if (spectral) define("SPECTRUM_COUNT", spectrum_count);

@@ -37,7 +37,8 @@ struct Features {
     bool crystals = false;       // some medium refracts doubly
     bool apertures = false;      // some receiver draws its rays from many (shaders/interfaces/receiver.glsl)
     bool far_receivers = false;  // … is far away
-    bool receptors = false;      // … has a receptor, which is made of this material:
+    bool receptor_shapes = false;  // … is no plane (shaders/features/receptor_shapes.glsl)
+    bool receptors = false;        // … has a receptor, which is made of this material:
     uint32_t receptor_material = 0;
     bool dispersion = false;           // some refractive index depends on the wavelength
     uint32_t spectrum_count = 0;       // room for so many

@@ -75,10 +75,18 @@ void SceneCompiler::add_materials() {
         out_.features.receptor_material = uint32_t(materials_.size());
         MaterialRecord white{};
         white.inside = white.outside = white.emission_texture = white.normal_texture = white.body = no_record;
-        surfaces.push_back(add_record(Interface::surface, {"lambertian", {{"reflectance", {1, 1, 1}}}, ""}));
-        places.push_back(uint32_t(materials_.size()));
-        materials_.push_back(white);
-        out_.material_names.push_back("receptor");
+        const Added surface =
+            add_record(Interface::surface, {"lambertian", {{"reflectance", {1, 1, 1}}}, ""});
+        for (int shape = 0; shape < 4; ++shape) {  // shaders/features/receptor_shapes.glsl
+            surfaces.push_back(surface);
+            places.push_back(uint32_t(materials_.size()));
+            materials_.push_back(white);
+            out_.material_names.push_back("receptor");
+        }
+        for (const PlacedObject& receiver : in_.receivers) {
+            const nlohmann::json& parameters = receiver.object.parameters;
+            out_.features.receptor_shapes |= parameters.contains("shape") && parameters["shape"] != "plane";
+        }
     }
     const auto refs = references(Interface::surface, surfaces);
     for (size_t i = 0; i < refs.size(); ++i) materials_[places[i]].surface = refs[i];

@@ -104,6 +104,9 @@
 #ifndef HAS_APERTURES
 #define HAS_APERTURES 0
 #endif
+#ifndef HAS_RECEPTOR_SHAPES
+#define HAS_RECEPTOR_SHAPES 0
+#endif
 #ifndef HAS_RECEPTORS
 #define HAS_RECEPTORS 0
 #endif

@@ -1,4 +1,5 @@
-// Receptors: planes at which receivers catch light. Backward paths start at theirs as if they had come to a white diffuse surface, so
+// Receptors: planes at which receivers catch light. Backward paths start at theirs as if they had come to a white diffuse surface (or
+// one of small bodies: features/receptor_shapes.glsl), so
 // that lights are sampled there and vertices connected; forward rays leave light there on their way, which goes on as if nothing
 // had happened. Nothing merges at receptors, since no vertices are stored there.
 //
@@ -64,15 +65,18 @@ SurfacePoint receptor_point(Path path) {
 #if FORWARD
     ReceptorHit r;
     next_receptor(path, r);
+    uint shape = r.shape;
     p.position += r.t * path.direction;
     p.geometric_normal = r.normal;
+#else
+    uint shape = path.flags >> PATH_SHAPE_SHIFT & 3u;
 #endif
     p.shading_normal = p.geometric_normal;
     p.error = vec3(receptor_margin(p.position, 0.0));
     p.tangent = vec4(frame_around(p.geometric_normal)[0], 1.0);
     p.color = vec4(1);
     p.uv0 = p.uv1 = vec2(0);
-    p.material = RECEPTOR_MATERIAL;
+    p.material = RECEPTOR_MATERIAL + (HAS_RECEPTOR_SHAPES == 1 ? shape : 0u);
     p.light = NO_RECORD;
     return p;
 }

@@ -12,7 +12,8 @@
 // and where it has them:
 //
 //   ReceptorHit    NAME_receptor(R r, vec3 origin, vec3 direction)   where light that passes on the ray is caught: all paths of this
-//                               receiver end at its receptor, a white diffuse plane that nothing else sees (features/receptors.glsl)
+//                               receiver end at its receptor, a white diffuse plane, or one of small bodies, that nothing else sees
+//                               (features/receptors.glsl)
 //   ReceiverSample NAME_far(R r, vec3 direction, float film_aspect)   what light that leaves the scene along `direction` adds: the flux F
 //                               adds F * density * weight to the mean over the film; pdf is that of `connect` choosing it, 1/sr
 //
@@ -39,6 +40,7 @@ struct CameraRay {
     float connect_pdf;  // of `connect` choosing this ray from a point at distance d on it: connect_pdf d², or connect_pdf
     bool is_parallel;   // where this is set
     bool at_receptor;   // the ray starts at the receptor, from above
+    uint shape;         // of that (features/receptor_shapes.glsl)
 };
 
 struct ReceiverSample {
@@ -55,9 +57,10 @@ ReceiverSample no_receiver_sample() { return ReceiverSample(vec3(0, 0, 1), 0.0, 
 struct ReceptorHit {
     float t;      // m; INFINITY = the ray does not meet it from the front
     vec3 normal;  // unit
+    uint shape;   // of the receptor (features/receptor_shapes.glsl)
 };
 
-ReceptorHit no_receptor_hit() { return ReceptorHit(INFINITY, vec3(0, 0, 1)); }
+ReceptorHit no_receptor_hit() { return ReceptorHit(INFINITY, vec3(0, 0, 1), 0u); }
 
 // The signed volume that the columns span.
 float frame_volume(mat3 m) { return dot(cross(m[0], m[1]), m[2]); }
@@ -72,7 +75,7 @@ vec3 scaled_local(mat3 m, vec3 v) {
 #include "generated/receiver_classes.glsl"
 
 CameraRay receiver_emit(uint ref, vec2 film, vec2 u, float film_aspect) {
-    CameraRay result = CameraRay(vec3(0), vec3(0, 0, 1), 0.0, 0.0, 1.0, false, false);
+    CameraRay result = CameraRay(vec3(0), vec3(0, 0, 1), 0.0, 0.0, 1.0, false, false, 0u);
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_emit(name##_record(record_index(ref)), film, u, film_aspect); break;
         RECEIVER_CLASSES(CASE)

@@ -22,5 +22,6 @@ void main() {
     vec2 film = (vec2(i % columns, i / columns) + 0.5) / vec2(columns, rows);
     CameraRay r = receiver_emit(receiver, film, vec2(0.5), float(columns) / float(rows));
     float share = 1.0 / (r.density * (r.at_receptor ? 1.0 : r.weight) * float(columns) * float(rows));  // m² or sr
+    if (r.shape != 0u) share = 0.0;  // what small bodies receive is no flux through their plane
     pixel_places[i - first] = PixelPlace(r.origin, -r.direction, share);
 }

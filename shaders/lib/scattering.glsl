@@ -4,6 +4,7 @@
 #include "features/dispersion.glsl"
 #include "features/faces.glsl"
 #include "features/normal_maps.glsl"
+#include "features/receptor_shapes.glsl"
 #include "interfaces/medium_optics.glsl"
 #include "interfaces/surface_optics.glsl"
 #include "lib/accurate_math.glsl"
@@ -141,6 +142,7 @@ bool is_delta_point(ScatteringPoint s) {
 // Of a surface of any class, in a kernel for one class too.
 Scattering scattering_pair(ScatteringPoint s, vec3 wi) {
     if (in_volume(s)) return phase_pair(s, wi);
+    if (is_shaped(s.material)) return shape_pair(shape_of(s.material), s.context, s.wo, wi);
     return surface_pair(s.surface, s.context, s.wo, wi);
 }
 
@@ -154,6 +156,7 @@ SurfaceEvent scattering_event(ScatteringPoint s, vec3 wi, vec3 second, uint aske
         event.next_pdf_reverse = event.next.pdf;
         keep_mueller(event.next_mueller, phase_pair(s, event.next.wi).mueller);
     }
+    if (is_shaped(s.material)) event = shape_event(shape_of(s.material), s.context, s.wo, wi, second, u);
     keep_mode(event, s.mode);
     if (meets_crystal(s.surface, s.sides)) cross_crystal(event, s, u.z);
     return event;

@@ -1,6 +1,8 @@
 // An illuminance meter: a rectangle in the xy plane around the origin of its node that faces +z and measures at every point what falls
-// on it from there, whatever lies behind; a floor or a desk may coincide with it. Light passes on as if it were not there.
-// Seen from +z, x runs to the right and y up. A pixel: lx.
+// on it from there, whatever lies behind; a floor or a desk may coincide with it. Other shapes measure at its points the mean
+// illuminance of a small body: a sphere, a hemisphere that bulges towards +z, or the side of a cylinder along z (cylindrical
+// illuminance where z stands upright); these see both sides, and nothing should coincide with their plane. Light passes on as if the
+// meter were not there. Seen from +z, x runs to the right and y up. A pixel: lx.
 //
 // Example:
 //     {"nodes": [{"name": "desk", "translation": [0, 0.8, 0], "rotation": [-0.7071, 0, 0, 0.7071], "extensions": {"ETD_optics": {
@@ -9,6 +11,7 @@ struct IlluminanceMeter {
     Placement placement;
     vec2 size;        //: required in (0, inf) m. Width along x and height along y.
     vec2 resolution;  //: [64, 64] in [1, 16384]. Pixels along x and y.
+    uint shape;       //: "plane" of plane|hemisphere|sphere|cylinder. What is lit at each point.
 };
 
 vec3 illuminance_normal(mat4x3 m, out float area) {
@@ -23,7 +26,7 @@ CameraRay illuminance_emit(IlluminanceMeter r, vec2 film, vec2 u, float film_asp
     float area;
     vec3 normal = illuminance_normal(m, area);
     vec3 origin = m * vec4((film.x - 0.5) * r.size.x, (0.5 - film.y) * r.size.y, 0.0, 1.0);
-    return CameraRay(origin, -normal, PI, 1.0 / (area * r.size.x * r.size.y), 1.0, true, true);
+    return CameraRay(origin, -normal, PI, 1.0 / (area * r.size.x * r.size.y), 1.0, true, true, r.shape);
 }
 
 // Where a point is, in sizes from the middle.
@@ -47,11 +50,12 @@ ReceptorHit illuminance_receptor(IlluminanceMeter r, vec3 origin, vec3 direction
     float area;
     vec3 normal = illuminance_normal(m, area);
     float facing = -dot(direction, normal), height = dot(origin - m[3], normal);
-    if (!(facing > 0.0) || !(height > 0.0)) return no_receptor_hit();
+    if (r.shape == 0u && !(facing > 0.0)) return no_receptor_hit();
     float t = height / facing;
+    if (!(t > 0.0) || isinf(t)) return no_receptor_hit();
     vec3 place = illuminance_place(r, normal, origin + t * direction);
     if (any(greaterThan(abs(place.xy), vec2(0.5)))) return no_receptor_hit();
-    return ReceptorHit(t, normal);
+    return ReceptorHit(t, normal, r.shape);
 }
 
 float illuminance_footprint(IlluminanceMeter r, vec3 point, float film_aspect, out float slope) {

@@ -59,7 +59,7 @@ CameraRay intensity_emit(IntensityMeter r, vec2 film, vec2 u, float film_aspect)
     vec3 direction = intensity_frame(r) * intensity_direction(r, film, row);
     vec3 origin = SCENE_RADIUS * (frame_around(direction) * vec3(warp_disk(u), 1.0));
     float disk = PI * square(SCENE_RADIUS), density = intensity_density(r, row);
-    return CameraRay(origin, -direction, disk, density / disk, density, true, false);
+    return CameraRay(origin, -direction, disk, density / disk, density, true, false, 0u);
 }
 
 // Any direction will do: one drawn as the film draws them.

@@ -19,7 +19,7 @@ CameraRay luminance_meter_emit(LuminanceMeter r, vec2 film, vec2 u, float film_a
     float s = film.y * luminance_meter_rim(r);
     vec3 local = vec3(2.0 * sqrt(max(s * (1.0 - s), 0.0)) * cos_sin_turns(film.x), 1.0 - 2.0 * s);
     return CameraRay(r.placement.world_from_local[3], luminance_meter_frame(r) * local, 1.0, luminance_meter_density(r), 1.0, false,
-                     false);
+                     false, 0u);
 }
 
 ReceiverSample luminance_meter_connect(LuminanceMeter r, vec3 point, vec2 u, float film_aspect) {

@@ -21,7 +21,7 @@ float orthographic_area(mat3 f) { return 4.0 * abs(dot(cross(f[0], f[1]), normal
 CameraRay orthographic_emit(OrthographicCamera r, vec2 film, vec2 u, float film_aspect) {
     mat3 f = orthographic_frame(r, film_aspect);
     vec3 origin = r.placement.world_from_local[3] + f * vec3(2.0 * film.x - 1.0, 1.0 - 2.0 * film.y, 0.0);
-    return CameraRay(origin, normalize(f[2]), 1.0, 1.0 / orthographic_area(f), 1.0, true, false);
+    return CameraRay(origin, normalize(f[2]), 1.0, 1.0 / orthographic_area(f), 1.0, true, false, 0u);
 }
 
 ReceiverSample orthographic_connect(OrthographicCamera r, vec3 point, vec2 u, float film_aspect) {

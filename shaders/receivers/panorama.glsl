@@ -21,7 +21,7 @@ float panorama_density(float cos_latitude) { return 1.0 / (2.0 * square(PI) * ma
 CameraRay panorama_emit(PanoramaCamera r, vec2 film, vec2 u, float film_aspect) {
     vec2 around = cos_sin_turns(film.x - 0.5), rise = cos_sin_turns(0.25 - 0.5 * film.y);
     vec3 local = vec3(rise.x * around.y, rise.y, -rise.x * around.x);
-    return CameraRay(r.placement.world_from_local[3], panorama_frame(r) * local, 1.0, panorama_density(rise.x), 1.0, false, false);
+    return CameraRay(r.placement.world_from_local[3], panorama_frame(r) * local, 1.0, panorama_density(rise.x), 1.0, false, false, 0u);
 }
 
 ReceiverSample panorama_connect(PanoramaCamera r, vec3 point, vec2 u, float film_aspect) {

@@ -28,7 +28,7 @@ CameraRay perspective_emit(PerspectiveCamera r, vec2 film, vec2 u, float film_as
     mat3 f = perspective_frame(r, film_aspect);
     vec3 w = f * vec3(2.0 * film.x - 1.0, 1.0 - 2.0 * film.y, 1.0);
     return CameraRay(r.placement.world_from_local[3], normalize(w), 1.0, perspective_density(f, w), 1.0, false,
-                     false);
+                     false, 0u);
 }
 
 ReceiverSample perspective_connect(PerspectiveCamera r, vec3 point, vec2 u, float film_aspect) {

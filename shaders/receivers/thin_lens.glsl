@@ -49,7 +49,7 @@ CameraRay thin_lens_emit(ThinLensCamera r, vec2 film, vec2 u, float film_aspect)
     vec3 w = r.placement.world_from_local[3] - lens.point + f * vec3(2.0 * film.x - 1.0, 1.0 - 2.0 * film.y, 1.0);
     vec3 direction = normalize(w);
     return CameraRay(lens.point, direction, 1.0, thin_lens_density(f, w, lens),
-                     1.0 / (lens.area * abs(dot(direction, lens.normal))), false, false);
+                     1.0 / (lens.area * abs(dot(direction, lens.normal))), false, false, 0u);
 }
 
 ReceiverSample thin_lens_connect(ThinLensCamera r, vec3 point, vec2 u, float film_aspect) {

@@ -29,7 +29,7 @@ Path emit_camera_ray(View view, uint place, uint sample_index, uint seed) {
     path.around = around_receiver(view);
     path.depth = 0u;
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
-    if (HAS_RECEPTORS == 1 && ray.at_receptor) path.flags |= PATH_TO_RECEPTOR;
+    if (HAS_RECEPTORS == 1 && ray.at_receptor) path.flags |= PATH_TO_RECEPTOR | (ray.shape << PATH_SHAPE_SHIFT);
     start_hero(path, path.random.pixel_hash >> 8);
     start_rows(path, view.receiver);
     start_mode(path);

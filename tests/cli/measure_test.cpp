@@ -125,8 +125,8 @@ TEST_CASE("one run renders several receivers, and its parts merge to the same im
     Executable program;
     write_text(program.folder / "s.gltf", scene_text);
     const auto render = [&](std::vector<std::string> more) {
-        std::vector<std::string> words = {"render", "s.gltf", "--receiver", "plane,gonio,away", "--seed", "3",
-                                          "--algorithm", "bidirectional"};
+        std::vector<std::string> words = {"render", "s.gltf", "--receiver",  "plane,gonio,away",
+                                          "--seed", "3",      "--algorithm", "bidirectional"};
         words.insert(words.end(), more.begin(), more.end());
         return program.run(words);
     };
@@ -134,7 +134,8 @@ TEST_CASE("one run renders several receivers, and its parts merge to the same im
     CAPTURE(whole.err);
     REQUIRE(whole.code == 0);
     CHECK(!std::filesystem::exists(program.folder / "whole.exr"));
-    const Image plane = read_exr(program.folder / "whole.plane.exr"), gonio = read_exr(program.folder / "whole.gonio.exr");
+    const Image plane = read_exr(program.folder / "whole.plane.exr"),
+                gonio = read_exr(program.folder / "whole.gonio.exr");
     CHECK(plane.width == 8);
     CHECK(gonio.height == 7);
     CHECK(std::get<std::string>(plane.attributes.at("pixelUnit")) == "lx");
@@ -157,7 +158,8 @@ TEST_CASE("one run renders several receivers, and its parts merge to the same im
         CHECK(read_exr(program.folder / fmt::format("merged.{}.exr", receiver)).values ==
               read_exr(program.folder / fmt::format("whole.{}.exr", receiver)).values);
     }
-    const Run fewer = program.run({"render", "s.gltf", "--receiver", "plane", "--passes", "64", "--resume", "a.etd"});
+    const Run fewer =
+        program.run({"render", "s.gltf", "--receiver", "plane", "--passes", "64", "--resume", "a.etd"});
     CHECK(fewer.code == 2);
     CHECK(fewer.error_lines() == 1);
     for (const char* names : {"plane,plane", "plane,nobody", "plane,,gonio"}) {
@@ -166,6 +168,7 @@ TEST_CASE("one run renders several receivers, and its parts merge to the same im
         CHECK(bad.code == 2);
         CHECK(bad.error_lines() == 1);
     }
-    REQUIRE(program.run({"render", "s.gltf", "--receiver", "all", "--passes", "1", "-o", "all.exr"}).code == 0);
+    REQUIRE(program.run({"render", "s.gltf", "--receiver", "all", "--passes", "1", "-o", "all.exr"}).code ==
+            0);
     CHECK(std::filesystem::exists(program.folder / "all.away.exr"));
 }

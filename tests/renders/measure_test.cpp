@@ -1,6 +1,7 @@
 // Measurements of scenes: that their intervals hold the truth, and that no light is lost.
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "host/measure/figures.h"
 #include "host/measure/measurement.h"
@@ -9,6 +10,7 @@
 #include "tests/support/render_probe.h"
 
 using namespace etendue;
+using std::numbers::pi;
 
 namespace {
 
@@ -100,30 +102,36 @@ Scene corner_of_meters() {
         s.placed("receiver", receiver, place);
         s.document["nodes"].back()["name"] = name;
     };
-    const auto plane = [](double w, double h, int columns, int rows) {
-        return nlohmann::json{{"class", "illuminance"}, {"size", {w, h}}, {"resolution", {columns, rows}}};
+    const auto plane = [](double w, double h, int columns, int rows, const char* shape = "plane") {
+        return nlohmann::json{
+            {"class", "illuminance"}, {"size", {w, h}}, {"resolution", {columns, rows}}, {"shape", shape}};
     };
     meter("table", plane(2, 2, 4, 4), {{0, 0.8, 0}, looks_up});
     meter("part of the table", plane(0.6, 1, 1, 2), {{0.5, 0.8, 0}, looks_up});
     meter("underside", plane(2, 2, 2, 2), {{0, 0.8, 0}, looks_down});
     meter("floor", plane(3, 3, 3, 3), {{0, 0, 0}, looks_up});
     meter("wall", plane(1, 1, 1, 1), {{0, 1.5, -2}, {0, 0, 0, 1}});
+    for (const char* shape : {"hemisphere", "sphere", "cylinder"})
+        meter(shape, plane(0.5, 0.5, 1, 2, shape), {{-0.4, 1.2, 0.1}, looks_up});
     meter("far", {{"class", "intensity"}, {"resolution", {4, 5}}}, {{0, 1, 0}, {0, 0, 0, 1}});
     meter("eye", {{"class", "luminance_meter"}, {"angle", 0.1}}, {{0, 1.5, 2}, {0, 0, 0, 1}});
     return compile_test_scene(s.import());
 }
 
-Measurement measure_all(Scene& scene, const std::vector<const Receiver*>& receivers, Algorithm algorithm, uint32_t seed) {
+Measurement measure_all(Scene& scene, const std::vector<const Receiver*>& receivers, Algorithm algorithm,
+                        uint32_t seed, uint64_t passes = 256) {
     RenderSettings settings;
     settings.algorithm = algorithm;
     settings.forward_paths = algorithm == Algorithm::backward ? 1 : 16;
     settings.seed = seed;
     MeasurementRun run(test_device(), scene, receivers, settings);
-    REQUIRE(run.add({0, 256}, [] { return false; }));
+    REQUIRE(run.add({0, passes}, [] { return false; }));
     return std::move(run.measurement());
 }
 
-TEST_CASE("meters that share their forward rays read what each reads alone, and what lamps emit is accounted for to a millionth") {
+TEST_CASE(
+    "meters that share their forward rays read what each reads alone, and what lamps emit is accounted for "
+    "to a millionth") {
     Scene scene = corner_of_meters();
     std::vector<const Receiver*> receivers;
     for (const Receiver& receiver : scene.receivers) receivers.push_back(&receiver);
@@ -142,10 +150,52 @@ TEST_CASE("meters that share their forward rays read what each reads alone, and 
         alone.push_back(measure_all(scene, {receiver}, Algorithm::bidirectional, 7).meters.front());
     for (size_t m = 0; m < receivers.size(); ++m)
         for (size_t way = 0; way < 3; ++way) {
-            if (way == 0 && receivers[m]->info->is_far) continue;  // which hits the lamp too seldom to tell its error
+            if (way == 0 && receivers[m]->info->is_far)
+                continue;  // which hits the lamp too seldom to tell its error
             CAPTURE(receivers[m]->name);
             CAPTURE(way);
             const double error = agreement(read[way][m], alone[m]);
             CHECK(error < 4.5);
+        }
+}
+
+TEST_CASE("small bodies of every shape catch the light of a point and of a uniform sky as closed forms say") {
+    const glm::dvec3 lamp(0.9, 1.2, -0.4);  // m, above the meters; 400 cd
+    for (const std::string shape : {"plane", "hemisphere", "sphere", "cylinder"})
+        for (const bool is_sky : {false, true}) {
+            CAPTURE(shape);
+            CAPTURE(is_sky);
+            SceneBuilder s;
+            if (is_sky)
+                s.environment(100);
+            else
+                s.light({{"type", "point"}, {"intensity", 400}}, at(lamp.x, lamp.y, lamp.z));
+            const double size = 1e-3;  // m
+            s.placed(
+                "receiver",
+                {{"class", "illuminance"}, {"size", {size, size}}, {"resolution", {1, 1}}, {"shape", shape}},
+                {{0, 0, 0}, looks_up});
+            s.document["nodes"].back()["name"] = "meter";
+            Scene scene = compile_test_scene(s.import());
+            const double d = glm::length(lamp), z = lamp.y / d, sine = std::sqrt(1 - z * z);
+            const double part = shape == "plane"        ? z
+                                : shape == "hemisphere" ? 0.25 * (1 + z)
+                                : shape == "sphere"     ? 0.25
+                                                        : sine / pi;
+            const double truth = is_sky ? 100 * pi : 400 / (d * d) * part;  // lx
+            for (const Algorithm algorithm :
+                 {Algorithm::backward, Algorithm::forward, Algorithm::bidirectional}) {
+                // The tiny meter is met by too few of a point's rays, but all are sent from it backward.
+                if (!is_sky && algorithm == Algorithm::forward) continue;
+                CAPTURE(algorithm_name(algorithm));
+                Interval lux{};
+                for (const Figure& figure :
+                     figures_of(measure_all(scene, {&scene.receivers[0]}, algorithm, 5, 4096).meters[0], {}))
+                    if (figure.name == "mean") lux = figure.interval;
+                CAPTURE(lux.value);
+                CAPTURE(truth);
+                CHECK(lux.low <= truth * (1 + 1e-3));
+                CHECK(lux.high >= truth * (1 - 1e-3));
+            }
         }
 }
