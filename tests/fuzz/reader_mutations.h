@@ -4,7 +4,9 @@
 #include <functional>
 
 #include "host/image/checkpoint.h"
+#include "host/image/exr.h"
 #include "host/measured/measured_bsdf.h"
+#include "host/measured/mueller_table.h"
 #include "host/photometry/photometric_table.h"
 #include "host/scene/density_bricks.h"
 #include "host/scene/spectral_value.h"
@@ -44,6 +46,17 @@ inline void check_measured(const std::filesystem::path& file) {
     require_finite({&bsdf.points.front().x, 2 * bsdf.points.size()}, "points are finite");
     require_finite(bsdf.colors, "colours are finite");
     require_finite(bsdf.spectra, "spectra are finite");
+}
+
+inline void check_mueller(const std::filesystem::path& file) {
+    MuellerTables lists;
+    const MuellerFile read = read_mueller_file(file, 1, lists);
+    require_finite(lists.numbers, "nodes are finite");
+    require_finite(lists.intensities, "intensities are finite");
+    const glm::uvec3 nodes = read.table.nodes;
+    if (lists.intensities.size() != size_t(nodes.x) * nodes.y * nodes.z * read.table.wavelengths ||
+        lists.ratios.size() != 2 * lists.intensities.size())
+        throw std::logic_error("a table has its matrices");
 }
 
 inline void check_spectrum(const std::filesystem::path& file) {
@@ -98,6 +111,16 @@ inline std::string radiance_bytes() {
     return bytes;
 }
 
+// A picture of 20 x 18 pixels, of two pieces that are compressed each for itself.
+inline std::string exr_bytes(const TemporaryFolder& folder) {
+    Image image;
+    image.width = 20, image.height = 18, image.channels = {"R", "G", "B", "depth"};
+    for (size_t i = 0; i < 4 * pixel_count(image); ++i) image.values.push_back(float(i % 7));
+    image.attributes["unit"] = "W";
+    write_exr(folder / "sound", image);
+    return read_text(folder / "sound");
+}
+
 inline std::string checkpoint_bytes(const TemporaryFolder& folder) {
     Checkpoint checkpoint;
     checkpoint.identity = {{"scene", "s"}, {"seed", 7}};
@@ -134,13 +157,19 @@ inline std::vector<FuzzedReader> fuzzed_readers(const TemporaryFolder& folder) {
     const std::string table = R"({"theta_i": [0, 60], "theta_r": [0, 45, 90], "phi": [0, 180],
 "wavelengths": [400, 700], "reflection": [[[[0.1, 0.2], [0.1, 0.2]], [[0.1, 0.2], [0.1, 0.2]], [[0, 0], [0, 0]]],
 [[[0.1, 0.2], [0.1, 0.2]], [[0.1, 0.2], [0.1, 0.3]], [[0, 0], [0, 0]]]]})";
+    const TensorFields mueller =
+        mueller_fields(even_nodes(3, 3, 3), {450, 600}, [](double, const glm::dvec3&, const glm::dvec3&) {
+            return std::array<double, 16>{0.5, 0.1};
+        });
     return {{"floats.nrrd", floats, check_densities},
             {"bytes.nrrd", bytes, check_densities},
             {"colors.bsdf", tensor_file_bytes(rgl_fields(metal, {}, small)), check_measured},
             {"spectra.bsdf", tensor_file_bytes(rgl_fields(metal, {400, 550, 700}, small)), check_measured},
             {"table.json", table, check_measured},
+            {"mueller.pbsdf", tensor_file_bytes(mueller), check_mueller},
             {"spectrum.csv", "nm,value\n# measured\n400, 0.5\n500;0.25\n\n600\t1e-1\n", check_spectrum},
             {"sky.hdr", radiance_bytes(), check_image},
+            {"sky.exr", exr_bytes(folder), check_image},
             {"lamp.ies", photometric_bytes("own_lambert_1986_commas_feet.ies"), check_lamp},
             {"floodlight.ies", photometric_bytes("own_lambert_type_b_quarter.ies"), check_lamp},
             {"lamp.ldt", photometric_bytes("own_isym4_asym.ldt"), check_lamp},
