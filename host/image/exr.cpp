@@ -25,6 +25,10 @@ namespace {
 // More than this and a header is taken for damaged: 2^31 floats, 8 GiB.
 const uint64_t max_values = uint64_t(1) << 31;
 
+// Values that a byte of a compressed file may stand for: DWA leaves two bytes of 64 equal halves, of which
+// deflate makes a thousandth.
+const uint64_t values_a_byte = 1 << 16;
+
 class MemoryOutput : public Imf::OStream {
   public:
     MemoryOutput() : Imf::OStream("memory") {}
@@ -96,7 +100,14 @@ std::map<std::string, Attribute> read_attributes(const Imf::Header& header) {
     return attributes;
 }
 
-Image read_image(Imf::InputFile& file, const std::string& name) {
+// OpenEXR takes memory for what a head promises, and shows what was there before where nothing was kept.
+uint64_t most_values(const Imf::Header& header, uint64_t bytes) {
+    const uint64_t most =
+        header.compression() == Imf::NO_COMPRESSION ? bytes / sizeof(half) : bytes * values_a_byte;
+    return std::min(most, max_values);
+}
+
+Image read_image(Imf::InputFile& file, uint64_t bytes, const std::string& name) {
     const Imf::Header& header = file.header();
     Imath::Box2i window = header.dataWindow();
     uint64_t width = uint64_t(int64_t(window.max.x) - window.min.x + 1);
@@ -111,9 +122,10 @@ Image read_image(Imf::InputFile& file, const std::string& name) {
         image.channels.push_back(i.name());
     }
     if (image.channels.empty()) fail_input("{}: the image has no channels", name);
-    if (width > max_values || height > max_values || width * height > max_values / image.channels.size())
-        fail_input("{}: {} x {} pixels of {} channels: more than the {} values that can be read", name, width,
-                   height, image.channels.size(), max_values);
+    const uint64_t most = most_values(header, bytes);
+    if (width > most || height > most || width * height > most / image.channels.size())
+        fail_input("{}: {} x {} pixels of {} channels: more than the {} values that {}", name, width, height,
+                   image.channels.size(), most, most < max_values ? "its bytes can hold" : "can be read");
     image.width = uint32_t(width), image.height = uint32_t(height);
     image.values.resize(pixel_count(image) * image.channels.size());
 
@@ -160,7 +172,7 @@ Image read_exr(std::span<const std::byte> bytes, const std::string& name) {
     try {
         MemoryInput stream(name, bytes);
         Imf::InputFile file(stream);
-        return read_image(file, name);
+        return read_image(file, bytes.size(), name);
     } catch (const Error&) {
         throw;
     } catch (const std::bad_alloc&) {

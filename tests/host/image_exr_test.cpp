@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "host/error.h"
@@ -121,6 +122,33 @@ TEST_CASE("a file cut short anywhere or altered in its head fails with one line 
         altered[at] = char(altered[at] ^ 0x5A);
         write_text(folder / "altered.exr", altered);
         CHECK(!contains(message_of(folder / "altered.exr"), "\n"));
+    }
+}
+
+TEST_CASE("a small file that promises a large image is refused before there is room for it") {
+    TemporaryFolder folder;
+    const std::string path = (folder / "a.exr").string(), before = std::string("dataWindow\0box2i\0", 17);
+    for (const Imf::Compression compression : {Imf::NO_COMPRESSION, Imf::RLE_COMPRESSION}) {
+        CAPTURE(int(compression));
+        {
+            Imf::Header header(16, 1);
+            header.compression() = compression;
+            header.channels().insert("Y", Imf::Channel(Imf::HALF));
+            const std::vector<half> pixels(16);
+            Imf::FrameBuffer buffer;
+            buffer.insert("Y", Imf::Slice::Make(Imf::HALF, pixels.data(), header.dataWindow()));
+            Imf::OutputFile file(path.c_str(), header);
+            file.setFrameBuffer(buffer);
+            file.writePixels(1);
+        }
+        CHECK(read_exr(path).width == 16);
+        std::string bytes = read_text(path);
+        const int32_t last_column = 49999999;
+        const size_t at = bytes.find(before);
+        REQUIRE(at != std::string::npos);
+        std::memcpy(bytes.data() + at + before.size() + 4 + 8, &last_column, sizeof last_column);
+        write_text(path, bytes);
+        CHECK(contains(message_of(path), "a.exr: 50000000 x 1 pixels of 1 channels: more than the"));
     }
 }
 
