@@ -8,8 +8,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "host/image/exr.h"
 #include "tests/renders/cell_row.h"
 #include "tests/renders/form_factors.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 using std::numbers::pi;
@@ -203,5 +205,46 @@ TEST_CASE("ten thousand emissive triangles of unequal size and brightness add up
     for (const uint32_t tile : {1u, 4u}) {
         const Agreement a = agreement(e, expected, tile, sd);
         CHECK_MESSAGE(a.holds, describe(a));
+    }
+}
+
+TEST_CASE("one bright texel of an environment image lights a floor within 1 % after 256 passes") {
+    constexpr int columns = 256, rows = 128, column = 20, row = 50;
+    constexpr double radiance = 1e6;
+    const TemporaryFolder folder;
+    Image sky{.width = columns, .height = rows};
+    std::vector<float> pixels(3 * columns * rows, 0.0f);
+    for (int c = 0; c < 3; ++c) pixels[3 * (row * columns + column) + size_t(c)] = float(radiance);
+    add_channels(sky, {"R", "G", "B"}, pixels, 3);
+    write_exr(folder / "sky.exr", sky);
+
+    SceneBuilder s;
+    s.rectangle(1, 1, s.lambertian(0.5), at(0, 0, 0));
+    s.orthographic(0.5, at(0, 0, 0.5));
+    s.optics()["environment"] = {{"class", "image"}, {"file", "sky.exr"}};
+    // A direction has z = -sin(polar) cos(turn), the solid angle another sine; the middle of the image is
+    // turn 0.
+    const auto of_polar = [](double angle) { return angle / 2 - std::sin(2 * angle) / 4; };
+    const auto of_turn = [](double place) { return -std::sin(2 * pi * (place / columns - 0.5)); };
+    const double expected =
+        floor_radiance(radiance * (of_polar(pi * (row + 1) / rows) - of_polar(pi * row / rows)) *
+                       (of_turn(column + 1) - of_turn(column)));
+    for (ColorMode color : {ColorMode::rgb, ColorMode::spectral}) {
+        SceneOptions options = test_options();
+        options.color = color;
+        Scene scene = compile_test_scene(s.import(folder / "scene.gltf"), options);
+        for (Algorithm algorithm : {Algorithm::backward, Algorithm::forward, Algorithm::bidirectional}) {
+            CAPTURE(algorithm_name(algorithm));
+            const bool forward = algorithm == Algorithm::forward;  // as even as its paths are many
+            const Estimates e = render_estimates(scene, {.width = 8,
+                                                         .height = 8,
+                                                         .passes = forward ? 4096u : 256u,
+                                                         .seeds = 1,
+                                                         .algorithm = algorithm});
+            CHECK(window_mean(e.mean, 8, {}) == doctest::Approx(expected).epsilon(0.005));
+            double worst = 0;
+            for (double value : e.mean) worst = std::max(worst, std::abs(value / expected - 1));
+            CHECK(worst < (algorithm == Algorithm::backward ? 0.01 : 0.1));
+        }
     }
 }
