@@ -1,8 +1,10 @@
 // The noise of colours at equal time: a scene of colours rendered in RGB and in wavelengths, which differ in
 // nothing else. Prints the noise of luminance Y and of the colour differences R - Y, G - Y, B - Y, root mean
 // squares over pixels and seeds relative to the mean luminance, after the same processor time for both.
+// Beside that of pixels stands the noise of their means over tiles of 8 x 8, of colours that the eye sees
+// flicker.
 //
-//     color_noise_bench [SCENE.gltf [SECONDS]]        default scenes/cornell_box.gltf 4
+//     color_noise_bench [SCENE.gltf [SECONDS [ALGORITHM]]]    default scenes/cornell_box.gltf 4 backward
 //
 // One thread: LP_NUM_THREADS=1.
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 #include <ctime>
 #include <vector>
 
+#include "host/cli/values.h"
 #include "host/error.h"
 #include "host/image/compare.h"
 #include "host/render/renderer.h"
@@ -23,17 +26,23 @@ using namespace etendue;
 
 namespace {
 
-constexpr uint32_t seeds = 8, pixels = 128;
+constexpr uint32_t seeds = 8, pixels = 128, tile = 8;
 
 struct Noise {
+    double luminance = 0, color = 0;
+};
+struct Measurement {
     uint32_t passes = 0;
-    double seconds = 0, mean = 0, luminance = 0, color = 0;
+    double seconds = 0, mean = 0;
+    Noise of_pixels, of_tiles;
 };
 
 double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
-std::vector<glm::dvec3> colors(const Image& image) {
-    std::vector<glm::dvec3> result(pixel_count(image));
+using Colors = std::vector<glm::dvec3>;
+
+Colors colors(const Image& image) {
+    Colors result(pixel_count(image));
     for (int c = 0; c < 3; ++c) {
         const auto values = plane(image, size_t(find_channel(image, std::string(1, "RGB"[c]))));
         for (size_t i = 0; i < values.size(); ++i) result[i][c] = values[i];
@@ -41,7 +50,37 @@ std::vector<glm::dvec3> colors(const Image& image) {
     return result;
 }
 
-Noise measure(Device& device, const std::string& file, ColorMode color, double seconds) {
+Colors tiles_of(const Colors& image) {
+    Colors result(image.size() / (tile * tile));
+    for (uint32_t y = 0; y < pixels; ++y)
+        for (uint32_t x = 0; x < pixels; ++x)
+            result[y / tile * (pixels / tile) + x / tile] += image[y * pixels + x] / double(tile * tile);
+    return result;
+}
+
+// Over the seeds' images, relative to their mean luminance, which is returned, too.
+Noise noise_of(const std::vector<Colors>& images, double& mean) {
+    const size_t count = images.front().size();
+    const double all = double(images.size());
+    Noise variance;
+    mean = 0;
+    for (size_t i = 0; i < count; ++i) {
+        glm::dvec4 sum(0), squares(0);  // colour differences, luminance
+        for (const Colors& image : images) {
+            const double y = luminance(image[i]);
+            const glm::dvec4 value(image[i] - y, y);
+            sum += value, squares += value * value;
+        }
+        const glm::dvec4 v = (squares - sum * sum / all) / (all - 1) / double(count);
+        variance.color += (v.x + v.y + v.z) / 3;
+        variance.luminance += v.w;
+        mean += sum.w / all / double(count);
+    }
+    return {std::sqrt(variance.luminance) / mean, std::sqrt(variance.color) / mean};
+}
+
+Measurement measure(Device& device, const std::string& file, ColorMode color, double seconds,
+                    Algorithm algorithm) {
     SceneOptions options;
     options.shaders = source_path("shaders");
     options.cache_folder = default_cache_folder();
@@ -50,39 +89,27 @@ Noise measure(Device& device, const std::string& file, ColorMode color, double s
     RenderSettings settings;
     settings.width = settings.height = pixels;
     settings.receiver = scene.receivers.front().ref;
-    settings.algorithm = Algorithm::backward;
+    settings.algorithm = algorithm;
     Renderer renderer(device, scene, settings);
     renderer.render_passes(16);
     const double before = processor_seconds();
     renderer.render_passes(64);
-    Noise noise;
-    noise.passes = uint32_t(std::lround(64 * seconds / (processor_seconds() - before)));
+    Measurement result;
+    result.passes = uint32_t(std::max(1l, std::lround(64 * seconds / (processor_seconds() - before))));
 
-    std::vector<glm::dvec3> sum(size_t(pixels) * pixels), squares(sum.size());
-    std::vector<double> y_sum(sum.size()), y_squares(sum.size());
+    std::vector<Colors> images, tiled;
     const double start = processor_seconds();
     for (uint32_t seed = 0; seed < seeds; ++seed) {
         renderer.restart(1 + seed);
-        for (uint32_t done = 0; done < noise.passes; done += 64)
-            renderer.render_passes(std::min(64u, noise.passes - done));
-        const auto image = colors(renderer.develop());
-        for (size_t i = 0; i < image.size(); ++i) {
-            const double y = luminance(image[i]);
-            const glm::dvec3 difference = image[i] - y;
-            sum[i] += difference, squares[i] += difference * difference;
-            y_sum[i] += y, y_squares[i] += y * y;
-        }
+        for (uint32_t done = 0; done < result.passes; done += 64)
+            renderer.render_passes(std::min(64u, result.passes - done));
+        images.push_back(colors(renderer.develop()));
+        tiled.push_back(tiles_of(images.back()));
     }
-    noise.seconds = (processor_seconds() - start) / seeds;
-    for (size_t i = 0; i < sum.size(); ++i) {
-        const glm::dvec3 variance = (squares[i] - sum[i] * sum[i] / double(seeds)) / double(seeds - 1);
-        noise.color += (variance.x + variance.y + variance.z) / 3 / double(sum.size());
-        noise.luminance += (y_squares[i] - y_sum[i] * y_sum[i] / seeds) / (seeds - 1) / double(sum.size());
-        noise.mean += y_sum[i] / seeds / double(sum.size());
-    }
-    noise.color = std::sqrt(noise.color) / noise.mean;
-    noise.luminance = std::sqrt(noise.luminance) / noise.mean;
-    return noise;
+    result.seconds = (processor_seconds() - start) / seeds;
+    result.of_tiles = noise_of(tiled, result.mean);
+    result.of_pixels = noise_of(images, result.mean);
+    return result;
 }
 
 }  // namespace
@@ -93,16 +120,22 @@ int main(int argc, char** argv) {
         fmt::print("{}, {}\n", device->description.name, device->description.driver);
         const std::string file = argc > 1 ? argv[1] : source_path("scenes/cornell_box.gltf");
         const double seconds = argc > 2 ? std::stod(argv[2]) : 4;
-        const Noise rgb = measure(*device, file, ColorMode::rgb, seconds);
-        const Noise spectral = measure(*device, file, ColorMode::spectral, seconds);
-        fmt::print("{:12} {:>7} {:>8} {:>10} {:>10} {:>10}\n", "", "passes", "seconds", "mean Y",
-                   "noise of Y", "of colour");
-        for (const auto& [name, n] : {std::pair("rgb", rgb), std::pair("spectral", spectral)})
-            fmt::print("{:12} {:7} {:8.2f} {:10.4f} {:10.5f} {:10.5f}\n", name, n.passes, n.seconds, n.mean,
-                       n.luminance, n.color);
-        fmt::print("{:12} {:7.2f} {:8.2f} {:10.4f} {:10.3f} {:10.3f}\n", "ratio",
+        const Algorithm algorithm = argc > 3 ? parse_algorithm(argv[3], "ALGORITHM") : Algorithm::backward;
+        const Measurement rgb = measure(*device, file, ColorMode::rgb, seconds, algorithm);
+        const Measurement spectral = measure(*device, file, ColorMode::spectral, seconds, algorithm);
+        fmt::print("{:32} {:>22} {:>22}\n", "", "noise of pixels", "of tiles");
+        fmt::print("{:9} {:>6} {:>7} {:>8} {:>11} {:>10} {:>11} {:>10}\n", "", "passes", "seconds", "mean Y",
+                   "Y", "colour", "Y", "colour");
+        for (const auto& [name, m] : {std::pair("rgb", rgb), std::pair("spectral", spectral)})
+            fmt::print("{:9} {:6} {:7.2f} {:8.4f} {:11.5f} {:10.5f} {:11.5f} {:10.5f}\n", name, m.passes,
+                       m.seconds, m.mean, m.of_pixels.luminance, m.of_pixels.color, m.of_tiles.luminance,
+                       m.of_tiles.color);
+        fmt::print("{:9} {:6.2f} {:7.2f} {:8.4f} {:11.3f} {:10.3f} {:11.3f} {:10.3f}\n", "ratio",
                    double(spectral.passes) / rgb.passes, spectral.seconds / rgb.seconds,
-                   spectral.mean / rgb.mean, spectral.luminance / rgb.luminance, spectral.color / rgb.color);
+                   spectral.mean / rgb.mean, spectral.of_pixels.luminance / rgb.of_pixels.luminance,
+                   spectral.of_pixels.color / rgb.of_pixels.color,
+                   spectral.of_tiles.luminance / rgb.of_tiles.luminance,
+                   spectral.of_tiles.color / rgb.of_tiles.color);
     } catch (const Error& error) {
         fmt::print(stderr, "{}\n", error.what());
         return int(error.code);
