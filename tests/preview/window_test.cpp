@@ -94,11 +94,13 @@ namespace {
 
 // A window of 640 x 480 pixels, at 96 dpi, with all sections of its panel closed.
 struct OpenPanel {
-    OpenPanel() : view(two_balls, words_with("640x480")) {
+    explicit OpenPanel(const std::string& scene = two_balls, size_t open_at_first = 3)
+        : view(scene, words_with("640x480")) {
         REQUIRE(view.x.wait_until(
             [](const Screenshot& shot) { return shot.at(635, 5)[0] > 200 && headers(shot).size() >= 2; }));
-        for (size_t i = 0; i < 3; ++i) click(200, headers(view.x.screenshot()).at(i));  // open at first
-        REQUIRE(view.x.wait_until([](const Screenshot& shot) { return headers(shot).size() == 6; }));
+        for (size_t i = 0; i < open_at_first; ++i) click(200, headers(view.x.screenshot()).at(i));
+        REQUIRE(view.x.wait_until(
+            [&](const Screenshot& shot) { return headers(shot).size() == open_at_first + 3; }));
     }
     // Middles of the headers of sections, from the top: bars of one colour across the panel.
     static std::vector<int> headers(const Screenshot& shot) {
@@ -129,6 +131,7 @@ struct OpenPanel {
     ViewedScene view;
 };
 constexpr size_t rays_section = 4, objects_section = 5;
+constexpr size_t scene_section = 2;  // where a file offers variants or moves
 constexpr int right_of_panel = 320;
 
 double changed_right_of_panel(const Screenshot& a, const Screenshot& b) {
@@ -188,6 +191,45 @@ TEST_CASE("a ball stands where one types it in") {
     view.x.key("Tab");
     CHECK(shows(view.x, image, {}, 0.01));  // another traversal: some edges fall on the other side
     CHECK(view.close().err == "");
+}
+
+TEST_CASE("a slider moves through the animations of a file") {
+    // The red ball stands at -0.8, at 1 s it jumps to -0.2.
+    const std::string moving = replaced(two_balls, R"("cameras":)", R"("animations": [{
+"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+"samplers": [{"input": 0, "output": 1, "interpolation": "STEP"}]}],
+"buffers": [{"byteLength": 32, "uri": "data:application/octet-stream;base64,AAAAAAAAgD/NzEy/AAAAAAAAAADNzEy+AAAAAAAAAAA="}],
+"bufferViews": [{"buffer": 0, "byteLength": 8}, {"buffer": 0, "byteOffset": 8, "byteLength": 24}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
+              {"bufferView": 1, "componentType": 5126, "count": 2, "type": "VEC3"}],
+"cameras":)");
+    const Image first = headless_image(two_balls, "640x480"),
+                last = headless_image(replaced(two_balls, "[-0.8, 0, 0]", "[-0.2, 0, 0]"), "640x480");
+    OpenPanel panel(moving, 4);
+    XServer& x = panel.view.x;
+    const int scene = panel.open(scene_section);
+    panel.click(20, scene + 24);  // "animated"
+    const auto drag = [&](int from, int to) {
+        x.move(from, scene + 47);
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        x.button(1, true);
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        x.move(to, scene + 47);
+        std::this_thread::sleep_for(std::chrono::milliseconds(150));
+        x.button(1, false);
+        x.move(5, 475);
+    };
+    const auto shows_without_panel = [&](const Image& image) {
+        x.key("Tab");
+        const bool shown = shows(x, image, {}, 0.01);  // edges, as below
+        x.key("Tab");
+        return shown;
+    };
+    drag(30, 300);
+    CHECK(shows_without_panel(last));
+    drag(170, 60);
+    CHECK(shows_without_panel(first));
+    CHECK(panel.view.close().err == "");
 }
 
 TEST_CASE("the question mark lists the keys") {
