@@ -98,7 +98,8 @@ bool principled_transmits_straight(PrincipledMaterial m) {
 struct PrincipledChoice {
     Spectrum reflected, transmitted;  // by the level surface, but what passes straight on:
     Spectrum straight;                // part of the light
-    float straight_probability, diffuse_probability, coat_probability, sheen_probability, facet_probability;  // sum 1
+    float straight_probability, diffuse_probability, sheen_probability, facet_probability;  // these and
+    vec2 coat_probability;                                                                  //   its two ways sum to 1
     float passes, coat_passes;  // of principled_layers_pass() for the direction it was made for
 };
 
@@ -122,13 +123,16 @@ PrincipledChoice principled_choice(PrincipledMaterial m, vec3 wo) {
     // Tilted facets reflect more than the level surface would, so they keep a share even where that is
     // nothing.
     float facets = m.coverage * max(passes * brightness(reflected + transmitted), 0.02);
-    float coat = 0.0, sheen = 0.0;
-    if (m.coat > 0.0) coat = m.coverage * max(principled_coat_fresnel(m, coat_cosine(m.coat_normal, wo)), 0.02);
-    if (!is_above_coat(coat_cosine(m.coat_normal, wo))) coat = 0.0;
+    vec2 coat = vec2(0);
+    float sheen = 0.0;
+    for (uint way = 0u; way < (m.importance ? COAT_WAYS : 1u) && m.coat > 0.0; ++way) {
+        float mu = coat_cosine(m.coat_normal, coat_way(way, true, wo));
+        if (is_above_coat(mu)) coat[way] = m.coverage * max(principled_coat_fresnel(m, mu), 0.02);
+    }
     if (m.sheen_most > 0.0)
         sheen = m.coverage * choice.coat_passes * brightness(m.sheen) *
                 max(sheen_albedo_bound(mu_o, m.sheen_roughness), 0.02);
-    float scale = 1.0 / (straight + diffuse + coat + sheen + facets);
+    float scale = 1.0 / (straight + diffuse + coat.x + coat.y + sheen + facets);
     choice.straight_probability = straight * scale;
     choice.diffuse_probability = diffuse * scale;
     choice.coat_probability = coat * scale;
@@ -143,21 +147,23 @@ Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float
     bool reflects = wi.z > 0.0;
     vec3 mirrored = vec3(wi.xy, abs(wi.z));
     float coat_passes, passes_there = principled_layers_pass(m, mirrored, coat_passes);
-    float passes = m.coverage * min(choice.passes, passes_there);
+    float passes = m.coverage * pass_layers(m.coat_normal, m.importance, choice.passes, passes_there);
     float diffuse_through = principled_diffuse_through(m);
     Spectrum value = passes * principled_diffuse(m, wo.z, wi.z);
     pdf = choice.diffuse_probability * INV_PI * mirrored.z * (reflects ? 1.0 - diffuse_through : diffuse_through);
     if (m.sheen_most > 0.0 && reflects) {
-        float below_coat = min(choice.coat_passes, coat_passes);
+        float below_coat = pass_layers(m.coat_normal, m.importance, choice.coat_passes, coat_passes);
         value += m.coverage * below_coat * sheen_reflection(wo, wi, m.sheen_roughness) * m.sheen;
         pdf += choice.sheen_probability * 0.5 * INV_PI;
     }
     if (m.coat > 0.0 && m.coat_alpha >= SMOOTH_ALPHA && reflects) {
-        vec3 o = to_coat(m.coat_normal, wo), i = to_coat(m.coat_normal, wi), h = reflection_normal(o, i);
-        if (is_above_coat(o.z) && is_above_coat(i.z)) {
+        for (uint way = 0u; way < COAT_WAYS; ++way) {
+            vec3 from = coat_way(way, m.importance, wo), to = coat_way(way, !m.importance, wi);
+            vec3 o = to_coat(m.coat_normal, from), i = to_coat(m.coat_normal, to), h = reflection_normal(o, i);
+            if (!is_above_coat(o.z) || !is_above_coat(i.z)) continue;
             value += m.coverage * principled_coat_fresnel(m, dot(o, h)) * ggx_reflection(o, i, h, m.coat_alpha) *
-                     coat_correction(m.coat_normal, m.importance, wo, wi);
-            pdf += choice.coat_probability * ggx_reflection_pdf(o, h, m.coat_alpha);
+                     coat_correction(m.coat_normal, m.importance, from, to);
+            pdf += choice.coat_probability[m.importance ? way : 0u] * ggx_reflection_pdf(o, h, m.coat_alpha);
         }
     }
     if (m.smooth_facets) return value;
@@ -175,7 +181,7 @@ Spectrum principled_scattering(PrincipledMaterial m, vec3 wo, vec3 wi, out float
 }
 
 // The part that is reflected or refracted as at a perfectly smooth surface, and its probability.
-// A coat whose normal is another reflects elsewhere than the facets: `coat` says which of the two is meant.
+// A coat whose normal is another reflects elsewhere than the facets: `coat` says which of the two is meant, and wo is the way of light.
 Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoice choice, bool coat, out float probability) {
     bool reflects = wi.z > 0.0;
     Spectrum value = Spectrum(0);
@@ -186,11 +192,12 @@ Spectrum principled_delta(PrincipledMaterial m, vec3 wo, vec3 wi, PrincipledChoi
         float part = principled_reflection_part(choice.reflected, choice.transmitted);
         probability = choice.facet_probability * (reflects ? part : 1.0 - part);
         float coat_passes;
-        value = min(choice.passes, principled_layers_pass(m, vec3(wi.xy, abs(wi.z)), coat_passes)) *
+        float passes_there = principled_layers_pass(m, vec3(wi.xy, abs(wi.z)), coat_passes);
+        value = pass_layers(m.coat_normal, m.importance, choice.passes, passes_there) *
                 (reflects ? choice.reflected : choice.transmitted * principled_transmission_scale(m));
     }
     if (coat_too && m.coat > 0.0 && m.coat_alpha < SMOOTH_ALPHA) {
-        probability += choice.coat_probability;
+        probability += wo.z < 0.0 ? choice.coat_probability.y : choice.coat_probability.x;
         value += Spectrum(principled_coat_fresnel(m, coat_cosine(m.coat_normal, wo)) *
                           coat_correction(m.coat_normal, m.importance, wo, wi));
     }

@@ -12,7 +12,8 @@
 //   Rough facets count as smooth where the media match so nearly that refraction is not resolved.
 // - Coat and sheen lie on both sides and scale what is below by min(p(wo), p(wi)), where 1 - p bounds their albedo from
 //   above: KHR_materials_sheen's albedo scaling. What the material emits they leave as it is.
-// - A coat may have normals of its own. Its cosines are about those; seen from where they face away there is no coat.
+// - A coat may have normals of its own. Its cosines are about those; seen from where they face away there is no coat. What it
+//   reflects to below the surface is mirrored there, and what is below is scaled by p of the camera's direction alone.
 // - An iridescent film reflects by lib/thin_film.glsl, exactly, on bases whose real index follows from their reflection at
 //   normal incidence in air; so it does under a coat, too.
 // - Where media differ, diffuse transmission keeps radiance over squared index: of what comes from the denser side
@@ -106,6 +107,7 @@ SurfacePair principled_evaluate(Principled r, SurfaceContext c, vec3 wo, vec3 wi
         Spectrum value = principled_scattering(m, principled_turned(m, from), principled_turned(m, to), pdf);
         if (way == 0u) pair.value = value, pair.pdf = pdf;
         else pair.pdf_reverse = pdf;
+        if (COAT_WAYS > 1u) m.importance = !m.importance;  // of what would come back
     }
     return pair;
 }
@@ -125,15 +127,18 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     bool diffuse = rest < choice.diffuse_probability;
     bool through = diffuse && rest < choice.diffuse_probability * principled_diffuse_through(m);
     bool coat = false, sheen = false;
+    uint coat_part = 0u;
     if (!diffuse) {
         rest -= choice.diffuse_probability;
-        coat = rest < choice.coat_probability;
-        sheen = !coat && rest < choice.coat_probability + choice.sheen_probability;
-        rest -= choice.coat_probability + choice.sheen_probability;
+        coat_part = rest < choice.coat_probability.x ? 0u : 1u;
+        float coat_probability = choice.coat_probability.x + choice.coat_probability.y;
+        coat = rest < coat_probability;
+        sheen = !coat && rest < coat_probability + choice.sheen_probability;
+        rest -= coat_probability + choice.sheen_probability;
     }
     bool is_delta = !diffuse && !sheen && (coat ? m.coat_alpha < SMOOTH_ALPHA : m.smooth_facets);
 
-    if (coat) wo = to_coat(m.coat_normal, wo);
+    if (coat) wo = to_coat(m.coat_normal, coat_way(coat_part, m.importance, wo));
     vec3 h = vec3(0, 0, 1);
     if (!is_delta) h = ggx_sample_visible(wo, coat ? PrincipledWidth(m.coat_alpha) : m.alpha, u.xy);
     float cos_o = dot(wo, h);
@@ -152,6 +157,7 @@ BsdfSample principled_sample(Principled r, SurfaceContext c, vec3 wo, vec3 u) {
     if (coat) {
         if (!is_above_coat(wi.z)) return no_bsdf_sample();
         wo = from_coat(m.coat_normal, wo), wi = from_coat(m.coat_normal, wi);
+        wi = coat_way(wi.z < 0.0 ? 1u : 0u, !m.importance, wi);
     }
     if (reflects ? wi.z <= 0.0 : wi.z >= 0.0) return no_bsdf_sample();
 
