@@ -22,6 +22,15 @@ void print_z_test(const char* label, const ZTest& test) {
                test.p_value, test.p_limit, test.tests);
 }
 
+void print_spectra(const SpectraComparison& spectra) {
+    if (spectra.bins == 0) return fmt::print("spectra   not compared: the images have different bins\n");
+    fmt::print("spectra   relMSE {:.6g} over {} bins, bias {:+.4f} %", spectra.relmse, spectra.bins,
+               100 * spectra.bias);
+    if (!spectra.worst_bin.empty())
+        fmt::print(", at most {:+.4f} % in {}", 100 * spectra.worst_bias, spectra.worst_bin);
+    fmt::print("\n");
+}
+
 void print_comparison(const CompareOptions& options, const Comparison& comparison) {
     fmt::print("image     {}\nreference {}\n", options.image.string(), options.reference.string());
     fmt::print("size      {} x {}, channels {}\n", comparison.width, comparison.height,
@@ -41,6 +50,7 @@ void print_comparison(const CompareOptions& options, const Comparison& compariso
         if (s.z_test) print_z_test("z, S1-S3 ", *s.z_test);
         if (s.tile_test) print_z_test("z, 16x16 ", *s.tile_test);
     }
+    if (comparison.spectra) print_spectra(*comparison.spectra);
     for (const PixelDifference& pixel : comparison.worst)
         fmt::print("worst     ({}, {})  {:.4g}  image {:.5g}  reference {:.5g}\n", pixel.x, pixel.y,
                    pixel.relative_squared, fmt::join(pixel.image, " "), fmt::join(pixel.reference, " "));

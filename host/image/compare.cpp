@@ -86,6 +86,43 @@ StokesComparison compare_stokes(const Image& image, const Image& reference,
     return result;
 }
 
+// Names of the spectral layout for OpenEXR (Fichet et al. 2021), as host/render/spectral_film.h writes them.
+std::vector<std::string> spectral_bins(const Image& image) {
+    std::vector<std::string> names;
+    for (const std::string& channel : image.channels)
+        if (channel.starts_with("S0.") && channel.ends_with("nm")) names.push_back(channel);
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::optional<SpectraComparison> compare_spectra(const Image& image, const Image& reference,
+                                                 const std::vector<size_t>& pixels) {
+    const std::vector<std::string> bins = spectral_bins(image), others = spectral_bins(reference);
+    if (bins.empty() && others.empty()) return std::nullopt;
+    SpectraComparison result;
+    if (bins != others) return result;
+    result.bins = bins.size();
+    const Planes a = select(image, bins), b = select(reference, bins);
+    const double count = double(pixels.size() * bins.size());
+    double total_a = 0, total_b = 0;
+    for (size_t bin = 0; bin < bins.size(); ++bin) {
+        double sum_a = 0, sum_b = 0;
+        for (size_t p : pixels) sum_a += a[bin][p], sum_b += b[bin][p];
+        total_a += sum_a, total_b += sum_b;
+        const double bias = ratio(sum_a - sum_b, sum_b);
+        if (std::abs(bias) > std::abs(result.worst_bias))
+            result.worst_bias = bias, result.worst_bin = bins[bin];
+    }
+    result.bias = ratio(total_a - total_b, total_b);
+    const double mean = total_b / count, floor = 0.01 * mean * mean;
+    for (size_t bin = 0; bin < bins.size(); ++bin)
+        for (size_t p : pixels) {
+            const double r = b[bin][p], d = double(a[bin][p]) - r;
+            result.relmse += ratio(d * d, r * r + floor) / count;
+        }
+    return result;
+}
+
 }  // namespace
 
 Comparison compare_images(const Image& image, const Image& reference, const std::string& image_name,
@@ -150,6 +187,7 @@ Comparison compare_images(const Image& image, const Image& reference, const std:
     result.z_test = z_test(image, reference, result.channels);
     result.tile_test = z_test(image, reference, result.channels, z_tile);
     if (has_stokes(image) && has_stokes(reference)) result.stokes = compare_stokes(image, reference, finite);
+    result.spectra = compare_spectra(image, reference, finite);
     return result;
 }
 

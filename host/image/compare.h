@@ -42,6 +42,14 @@ struct StokesComparison {
     std::optional<ZTest> z_test, tile_test;
 };
 
+// The bins of two spectral images, pixel by pixel.
+struct SpectraComparison {
+    size_t bins = 0;              // 0: they are not the same, and nothing is compared
+    double relmse = 0, bias = 0;  // as of colours
+    double worst_bias = 0;        // of the bins' means, the one furthest from zero,
+    std::string worst_bin;        //   and its channel
+};
+
 struct Comparison {
     uint32_t width = 0, height = 0;
     std::vector<std::string> channels;   // those compared
@@ -54,6 +62,7 @@ struct Comparison {
     std::optional<ZTest> z_test;                          // where both images have an error layer
     std::optional<ZTest> tile_test;                       // the same over tiles of z_tile * z_tile pixels
     std::optional<StokesComparison> stokes;
+    std::optional<SpectraComparison> spectra;  // where one of them has any
 };
 
 // Compares R, G, B where both have them, else all channels but A and the layers of --aovs. Fails with one

@@ -82,6 +82,24 @@ TEST_CASE("Stokes vectors are compared in units of the mean intensity") {
     CHECK(!compare_images(rgb(1, 1, {1, 1, 1}), rgb(1, 1, {1, 1, 1})).stokes);
 }
 
+TEST_CASE("spectra are compared bin by bin, where the bins are the same") {
+    Image a = rgb(2, 1, {1, 1, 1, 1, 1, 1}), b = a, c = a;
+    const std::vector<std::string> bins = {"S0.400,000000nm", "S0.600,000000nm"};
+    add_channels(a, bins, std::vector<float>{1.1f, 2, 3, 4}, 2);
+    add_channels(b, bins, std::vector<float>{1, 2, 3, 4}, 2);
+    add_channels(c, {"S0.500,000000nm"}, std::vector<float>{1, 2}, 1);
+    const SpectraComparison s = *compare_images(a, b).spectra;
+    CHECK(s.bins == 2);
+    CHECK(s.bias == doctest::Approx(0.01).epsilon(1e-5));
+    CHECK(s.worst_bin == bins[0]);
+    CHECK(s.worst_bias == doctest::Approx(0.1 / 4).epsilon(1e-5));
+    CHECK(s.relmse == doctest::Approx(0.01 / (1 + 0.01 * 2.5 * 2.5) / 4).epsilon(1e-5));
+    CHECK(compare_images(a, a).spectra->relmse == 0);
+    CHECK(compare_images(a, c).spectra->bins == 0);
+    CHECK(compare_images(a, rgb(2, 1, {1, 1, 1, 1, 1, 1})).spectra->bins == 0);
+    CHECK(!compare_images(rgb(1, 1, {1, 1, 1}), rgb(1, 1, {1, 1, 1})).spectra);
+}
+
 TEST_CASE("the worst pixels come worst first with their place and values") {
     std::vector<float> values(3 * 12, 1.0f), changed = values;
     changed[3 * 7 + 1] = 2.0f;
