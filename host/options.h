@@ -83,6 +83,7 @@ struct CompareOptions {
 };
 
 struct InspectOptions : SceneChoice {
+    Algorithm algorithm = Algorithm::automatic;
     bool json = false;  // only what auto chooses, for programs to read
 };
 

@@ -116,6 +116,7 @@ CLI::App* add_inspect(CLI::App& app, InspectOptions& options, SharedArguments& a
                 {"variant"},
                 {"at"},
                 {"environment"},
+                {"algorithm", "Whose kernels are compiled (default: auto, which may run a pilot)"},
                 {"color"},
                 {"polarization"},
                 {"spectral-bins"},
@@ -253,6 +254,9 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     }
     if (inspect->parsed()) {
         finish_shared(inspect_options, inspect_arguments);
+        inspect_options.algorithm = parse_algorithm(inspect_arguments.algorithm, "--algorithm");
+        if (inspect_options.json && inspect_options.algorithm != Algorithm::automatic)
+            fail_input("--json: tells what auto chooses, and goes without --algorithm");
         return inspect_options;
     }
     if (classes->parsed()) {

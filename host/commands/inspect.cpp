@@ -14,6 +14,7 @@ RenderSettings render_settings(const Receiver& receiver, const InspectOptions& o
     RenderSettings settings;
     settings.receiver = receiver.ref;
     settings.width = size.width, settings.height = size.height;
+    settings.algorithm = options.algorithm;
     return settings;
 }
 

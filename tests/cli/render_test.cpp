@@ -200,6 +200,14 @@ TEST_CASE("inspect, classes and devices tell what there is") {
         CAPTURE(word);
         CHECK(inspect.out.find(word) != std::string::npos);
     }
+    // A named algorithm takes no pilot: the kernels are its own.
+    const auto inspected = [&](const std::string& algorithm) {
+        return program.run({"inspect", "s.gltf", "--algorithm", algorithm}).out;
+    };
+    CHECK(inspected("backward").find("backward, fused schedule: asked for") != std::string::npos);
+    CHECK(inspected("backward").find("sort_vertices") == std::string::npos);
+    CHECK(inspected("bidirectional").find("sort_vertices") != std::string::npos);
+    CHECK(program.run({"inspect", "s.gltf", "--algorithm", "backward", "--json"}).code == 2);
     const Run list = program.run({"classes"});
     CHECK(list.code == 0);
     CHECK(list.out.find("that reflects and refracts (Walter et al. 2007), sampled by visible normals.\n") !=
