@@ -14,7 +14,8 @@ from pathlib import Path
 import colour  # pip install colour-science
 import numpy as np
 
-CIE = "table of CIE 15:2018, Colorimetry, as in the Python package colour-science (BSD-3-Clause)"
+PACKAGE = "as in the Python package colour-science (BSD-3-Clause)"
+CIE = f"table of CIE 15:2018, Colorimetry, {PACKAGE}"
 OUT = Path(__file__).parent.parent / "host/spectra/library.json"
 
 
@@ -69,8 +70,15 @@ def main(folder):
         keep = (observer.wavelengths >= 360) & (observer.wavelengths <= 830)
         library[f"CIE 1931 {name}"] = table(observer.wavelengths[keep], observer.values[keep, i],
                                             "CIE 1931 standard observer, 2 degrees, 1 nm: " + CIE)
-    for name, key in {"A": "A", "D65": "D65", "E": "E", "F2": "FL2", "F11": "FL11"}.items():
+    for name, key in {"A": "A", "D65": "D65", "E": "E", **{f"F{i}": f"FL{i}" for i in range(1, 13)}}.items():
         library[f"illuminant {name}"] = from_colour(colour.SDS_ILLUMINANTS[key], f"CIE illuminant {key}: {CIE}")
+    daylight = colour.colorimetry.SDS_BASIS_FUNCTIONS_CIE_ILLUMINANT_D_SERIES
+    for name in ["S0", "S1", "S2"]:
+        library[f"CIE daylight {name}"] = from_colour(daylight[name], f"component {name} of CIE daylight: {CIE}")
+    test_colours = colour.quality.datasets.SDS_TCS["CIE 1995"]
+    for i in range(1, 15):
+        library[f"CIE test colour {i}"] = from_colour(
+            test_colours[f"TCS{i:02d}"], f"reflectance of test colour {i} of CIE 13.3-1995, {PACKAGE}")
     for name, file in {"BK7": "N-BK7", "SF11": "SF11", "fused silica": "fused_silica.Malitson",
                        "PMMA": "PMMA.Sultanova", "polycarbonate": "polycarbonate.Sultanova",
                        "water": "water.Daimon-20C"}.items():

@@ -76,7 +76,14 @@ CLI::App* add_measure(CLI::App& app, MeasureOptions& options, MeasureArguments& 
                      "Forward paths a pixel and pass, with a named algorithm that has them (default: 1)")
         ->option_text("X");
     add_shared(*measure, options, arguments.shared,
-               {{"vertex-memory"}, {"color"}, {"polarization"}, {"sampler"}, {"seed"}, {"device"}});
+               {{"vertex-memory"},
+                {"color"},
+                {"polarization"},
+                {"spectral-bins",
+                 "Also spectra, in N equal bins from 360 to 830 nm; of 47 or more colour rendering is told"},
+                {"sampler"},
+                {"seed"},
+                {"device"}});
     measure
         ->add_option("--checkpoint", options.checkpoint, "Keep the readings there, to go on from or to merge")
         ->option_text("FILE");
@@ -111,6 +118,8 @@ void finish_measure(MeasureOptions& options, const MeasureArguments& arguments, 
     if (arguments.forward_paths)
         options.forward_paths = parse_forward_paths(*arguments.forward_paths, options.algorithm);
     options.vertex_bytes = parse_mebibytes(arguments.shared.vertex_memory, "--vertex-memory");
+    if (options.spectral_bins > 0 && options.color == ColorMode::rgb)
+        fail_input("--spectral-bins: goes with --color spectral or auto, not with rgb");
     if (options.output.empty() && options.checkpoint.empty())
         fail_input("measure: --output or --checkpoint says where to (see etendue measure --help)");
     options.command_line = std::move(command_line);

@@ -65,6 +65,7 @@ int measure_command(const MeasureOptions& options) {
     settings.forward_paths = options.forward_paths.value_or(settings.forward_paths);
     settings.vertex_bytes = options.vertex_bytes;
     settings.seed = uint32_t(options.seed);
+    settings.spectral_bins = options.spectral_bins;
     MeasurementRun run(*opened.device, scene, choose_meters(scene, options), settings);
     Measurement& measurement = run.measurement();
     const nlohmann::json identity = measurement_identity(source_hashes(opened, options), options, scene, run);

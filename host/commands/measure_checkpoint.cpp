@@ -37,9 +37,12 @@ void keep(const Measurement& measurement, Checkpoint& checkpoint) {
                           {"rows", readings.meter.rows},
                           {"is_far", readings.meter.is_far},
                           {"has_extent", readings.meter.has_extent},
+                          {"spectral_bins", readings.spectral_bins},
                           {"forward_paths", readings.forward_paths}});
         add_array(checkpoint, array_name(m, "sums"), readings.sums);
         add_array(checkpoint, array_name(m, "places"), readings.meter.places);
+        add_array(checkpoint, array_name(m, "spectra"), readings.spectra);
+        add_array(checkpoint, array_name(m, "spectra of rows"), readings.row_spectra);
     }
     checkpoint.passes = measurement.passes;
     checkpoint.about["meters"] = meters;
@@ -68,6 +71,7 @@ nlohmann::json measurement_identity(const nlohmann::json& sources, const Measure
                      {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
                      {"vertex-memory", options.vertex_bytes >> 20},
                      {"color", scene.features.spectral ? "spectral" : "rgb"},
+                     {"spectral-bins", scene.features.spectral_bins},
                      {"polarization", scene.features.polarization}});
     return identity;
 }
@@ -102,6 +106,12 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
         meter.places = array_of<PixelPlace>(checkpoint, path, array_name(m, "places"), meter.pixels());
         readings.sums =
             array_of<ExactSum>(checkpoint, path, array_name(m, "sums"), meter.pixels() * replicates);
+        readings.spectral_bins = json.at("spectral_bins");
+        readings.spectra = array_of<ExactSum>(checkpoint, path, array_name(m, "spectra"),
+                                              spectral_sums(meter.pixels(), readings.spectral_bins, 1));
+        readings.row_spectra =
+            array_of<ExactSum>(checkpoint, path, array_name(m, "spectra of rows"),
+                               spectral_sums(meter.rows * replicates, readings.spectral_bins, 1));
         readings.forward_paths = json.at("forward_paths");
         readings.passes = checkpoint.passes.count() / replicates;
     }
@@ -115,6 +125,8 @@ void add(Measurement& all, const Measurement& part) {
     for (size_t m = 0; m < all.meters.size(); ++m) {
         Readings& readings = all.meters[m];
         merge(std::span(readings.sums), std::span<const ExactSum>(part.meters[m].sums));
+        merge(std::span(readings.spectra), std::span<const ExactSum>(part.meters[m].spectra));
+        merge(std::span(readings.row_spectra), std::span<const ExactSum>(part.meters[m].row_spectra));
         readings.forward_paths += part.meters[m].forward_paths;
         readings.passes = all.passes.count() / replicates;
     }

@@ -9,6 +9,7 @@
 #include "host/error.h"
 #include "host/spectra/color.h"
 #include "host/spectra/chromaticity.h"
+#include "host/spectra/color_rendering.h"
 
 namespace etendue {
 namespace {
@@ -152,6 +153,46 @@ void add_colors(std::vector<Figure>& figures, const Readings& readings, const st
     add("Duv", "", [](const glm::dvec3& c) { return correlated_color_temperature(c).duv; });
 }
 
+// Indices of colour rendering, of what all pixels together receive.
+void add_color_rendering(std::vector<Figure>& figures, const Readings& readings,
+                         const std::vector<double>& weights) {
+    const Meter& meter = readings.meter;
+    if (readings.spectral_bins < least_rendering_bins) return;
+    std::vector<Series> bins(readings.spectral_bins, Series(replicates, 0.0));
+    for (uint32_t row = 0; row < meter.rows; ++row) {
+        // Pixels of a row stand for equal extents.
+        const double weight = weights[size_t(row) * meter.columns] * meter.columns;
+        for (uint32_t k = 0; k < replicates; ++k) {
+            const std::vector<double> spectrum = row_spectrum(readings, row, k);
+            for (size_t bin = 0; bin < bins.size(); ++bin) bins[bin][k] += weight * spectrum[bin];
+        }
+    }
+    std::vector<double> centers, means;
+    for (size_t bin = 0; bin < bins.size(); ++bin) {
+        centers.push_back(first_nm + (double(bin) + 0.5) * (last_nm - first_nm) / double(bins.size()));
+        means.push_back(mean_of(bins[bin]));
+    }
+    const auto rendering = [&](const std::vector<double>& values) {
+        return color_rendering(interpolate(centers, values, Outside::hold));
+    };
+    if (const double off = rendering(means).off_reference; !(off <= most_off_reference)) {
+        figures.push_back({"Ra",
+                           "",
+                           {NAN, NAN, NAN},
+                           fmt::format("out of range: {:.4f} from the reference in u, v, above {}", off,
+                                       most_off_reference)});
+        return;
+    }
+    const std::vector<Interval> intervals = function_intervals(bins, [&](const auto& m) {
+        const ColorRendering r = rendering(m);
+        std::vector<double> indices = {r.general};
+        indices.insert(indices.end(), r.each.begin(), r.each.end());
+        return indices;
+    });
+    for (size_t i = 0; i < intervals.size(); ++i)
+        figures.push_back({i == 0 ? "Ra" : fmt::format("R{}", i), "", intervals[i], ""});
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> luminous_values(const Readings& readings) {
@@ -187,24 +228,36 @@ Interval mean_interval(const Series& series) {
     return {mean, mean - half, mean + half};
 }
 
-Interval function_interval(const std::vector<Series>& series,
-                           const std::function<double(const std::vector<double>&)>& f) {
+std::vector<Interval> function_intervals(
+    const std::vector<Series>& series,
+    const std::function<std::vector<double>(const std::vector<double>&)>& f) {
     const size_t n = series[0].size();
     std::vector<double> means;
     for (const Series& s : series) means.push_back(mean_of(s));
-    Series left_out;
+    std::vector<Series> left_out(n);
     for (size_t k = 0; k < n; ++k) {
         std::vector<double> others;
         for (size_t i = 0; i < series.size(); ++i)
             others.push_back((double(n) * means[i] - series[i][k]) / double(n - 1));
-        left_out.push_back(f(others));
+        left_out[k] = f(others);
     }
-    const double whole = f(means), mean = mean_of(left_out);
-    double squares = 0;
-    for (double x : left_out) squares += (x - mean) * (x - mean);
-    const double half = student_factor(n) * std::sqrt(squares * double(n - 1) / double(n));
-    const double unbiased = double(n) * whole - double(n - 1) * mean;
-    return {unbiased, unbiased - half, unbiased + half};
+    std::vector<Interval> intervals;
+    for (const double whole : f(means)) {
+        Series values;
+        for (const Series& s : left_out) values.push_back(s[intervals.size()]);
+        const double mean = mean_of(values);
+        double squares = 0;
+        for (double x : values) squares += (x - mean) * (x - mean);
+        const double half = student_factor(n) * std::sqrt(squares * double(n - 1) / double(n));
+        const double unbiased = double(n) * whole - double(n - 1) * mean;
+        intervals.push_back({unbiased, unbiased - half, unbiased + half});
+    }
+    return intervals;
+}
+
+Interval function_interval(const std::vector<Series>& series,
+                           const std::function<double(const std::vector<double>&)>& f) {
+    return function_intervals(series, [&](const auto& m) { return std::vector<double>{f(m)}; })[0];
 }
 
 std::vector<MeterPoint> standard_points(uint32_t count) {
@@ -246,6 +299,7 @@ std::vector<Figure> figures_of(const Readings& readings, const std::vector<Meter
     }
     if (!points.empty() && !meter.is_far && meter.pixels() > 1) add_points(figures, meter, values, points);
     add_colors(figures, readings, weights);
+    add_color_rendering(figures, readings, weights);
     return figures;
 }
 

@@ -26,6 +26,10 @@ Interval mean_interval(const Series& series);
 // Of f(means of the series), by the jackknife. All series are as long.
 Interval function_interval(const std::vector<Series>& series,
                            const std::function<double(const std::vector<double>&)>& f);
+// The same of each of several values of f.
+std::vector<Interval> function_intervals(
+    const std::vector<Series>& series,
+    const std::function<std::vector<double>(const std::vector<double>&)>& f);
 // Student's t for 95 % of two sides.
 double student_factor(size_t samples);
 
@@ -37,7 +41,7 @@ struct Figure {
     std::string name;  // "mean", "U0 = min / mean"
     std::string unit;  // empty = a number
     Interval interval;
-    std::string where;  // of a minimum or maximum: which pixel; else empty
+    std::string where;  // of a minimum or maximum: which pixel; of what has no value: why; else empty
 };
 
 // A point of a meter, in parts of its width and height from the upper left corner.
@@ -45,6 +49,9 @@ using MeterPoint = glm::dvec2;
 // 5, 9 or 13 points as displays are judged by (IEC 62977 and makers' data sheets): 9 at 1/6, 1/2 and 5/6 of
 // each side; 5: their corners and middle; 13: the 9, and four at 1/10 and 9/10.
 std::vector<MeterPoint> standard_points(uint32_t count);
+
+// Bins of a spectrum below which they are too wide for colour rendering: 10 nm.
+constexpr uint32_t least_rendering_bins = 47;
 
 // `points`: for uniformity; empty = none.
 std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points);

@@ -20,6 +20,15 @@ uint32_t seed_of(uint32_t seed, uint32_t replicate) {
     return h ^ (h >> 16);
 }
 
+// What one meter reads in the passes that are being made.
+struct Addend {
+    std::vector<ExactSum> sums, spectra, row_spectra;
+    explicit Addend(const Readings& readings)
+        : sums(readings.sums.size()),
+          spectra(readings.spectra.size()),
+          row_spectra(readings.row_spectra.size()) {}
+};
+
 // Renders meters, as many at once as one renderer serves.
 std::vector<RenderSettings> settings_of(const RenderSettings& common, const std::vector<FilmView>& views) {
     std::vector<RenderSettings> all;
@@ -46,6 +55,10 @@ MeasurementRun::MeasurementRun(Device& device, Scene& scene, const std::vector<c
         Readings& readings = measurement_.meters.emplace_back();
         readings.meter = describe_meter(device, scene, *receiver);
         readings.sums.resize(readings.meter.pixels() * replicates);
+        readings.spectral_bins = scene.features.spectral ? common.spectral_bins : 0;
+        readings.spectra.resize(spectral_sums(readings.meter.pixels(), readings.spectral_bins, 1));
+        readings.row_spectra.resize(
+            spectral_sums(uint64_t(readings.meter.rows) * replicates, readings.spectral_bins, 1));
     }
     if (settings_.algorithm == Algorithm::automatic) {
         const auto sure = choose_without_pilot(device, scene, views);
@@ -61,8 +74,8 @@ MeasurementRun::~MeasurementRun() = default;
 bool MeasurementRun::add(const PassRange& range, const std::function<bool()>& interrupt) {
     const auto start = std::chrono::steady_clock::now();
     const uint64_t first = range.first / replicates, count = range.count() / replicates;
-    std::vector<std::vector<ExactSum>> addends;
-    for (const Readings& readings : measurement_.meters) addends.emplace_back(readings.sums.size());
+    std::vector<Addend> addends;
+    for (const Readings& readings : measurement_.meters) addends.emplace_back(readings);
     RenderCounters counters;
     for (uint32_t k = 0; k < replicates; ++k) {
         size_t meter = 0;
@@ -76,16 +89,28 @@ bool MeasurementRun::add(const PassRange& range, const std::function<bool()>& in
             const FilmShape shape = renderer->film_shape();
             const size_t half = shape.sums_a_layer() / 2, stride = shape.sums_a_pixel();
             const ExactSum* pixel = film.pixels.data();
-            for (size_t v = 0; v < renderer->views().size(); ++v, ++meter)
-                for (size_t i = 0; i < measurement_.meters[meter].meter.pixels(); ++i, pixel += stride)
-                    for (size_t at : {size_t(0), half}) merge(addends[meter][i * replicates + k], pixel[at]);
+            const ExactSum* bins = film.bins.data();
+            for (size_t v = 0; v < renderer->views().size(); ++v, ++meter) {
+                Addend& addend = addends[meter];
+                const Readings& readings = measurement_.meters[meter];
+                for (size_t i = 0; i < readings.meter.pixels(); ++i, pixel += stride)
+                    for (size_t at : {size_t(0), half}) merge(addend.sums[i * replicates + k], pixel[at]);
+                const size_t triples = spectral_sums(1, readings.spectral_bins, 1);
+                for (size_t i = 0; i < addend.spectra.size(); ++i, ++bins) {
+                    const size_t row = i / triples / readings.meter.columns;
+                    merge(addend.spectra[i], *bins);
+                    merge(addend.row_spectra[(row * replicates + k) * triples + i % triples], *bins);
+                }
+            }
         }
     }
     measurement_.passes.add(range);
     etendue::add(measurement_.counters, counters);
     for (size_t m = 0; m < addends.size(); ++m) {
         Readings& readings = measurement_.meters[m];
-        merge(std::span(readings.sums), std::span<const ExactSum>(addends[m]));
+        merge(std::span(readings.sums), std::span<const ExactSum>(addends[m].sums));
+        merge(std::span(readings.spectra), std::span<const ExactSum>(addends[m].spectra));
+        merge(std::span(readings.row_spectra), std::span<const ExactSum>(addends[m].row_spectra));
         readings.passes = measurement_.passes.count() / replicates;
         readings.forward_paths += counters.forward_paths / renderers_.size();
     }

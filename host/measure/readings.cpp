@@ -1,5 +1,7 @@
 #include "host/measure/readings.h"
 
+#include "host/render/spectral_film.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -47,6 +49,17 @@ PixelMeans replicate_means(const Readings& readings, uint32_t replicate) {
     return means;
 }
 
+std::vector<double> row_spectrum(const Readings& readings, uint32_t row, uint32_t replicate) {
+    const size_t triples = spectral_sums(1, readings.spectral_bins, 1);
+    const double samples = double(std::max<uint64_t>(readings.passes, 1)) * readings.meter.columns;
+    std::vector<double> bins;
+    for (uint32_t bin = 0; bin < readings.spectral_bins; ++bin) {
+        const size_t place = (size_t(row) * replicates + replicate) * triples + bin / 3;
+        bins.push_back(value(readings.row_spectra[place])[int(bin % 3)] / samples);
+    }
+    return bins;
+}
+
 Image to_image(const Readings& readings) {
     const size_t pixels = readings.meter.pixels();
     std::vector<glm::vec3> means(pixels), errors(pixels);
@@ -67,6 +80,12 @@ Image to_image(const Readings& readings) {
     add_channels(image, {"error.R", "error.G", "error.B"}, std::span<const float>(&errors[0].x, 3 * pixels),
                  3);
     image.attributes["pixelUnit"] = readings.meter.unit;
+    if (readings.spectral_bins > 0) {
+        add_spectra(image, readings.spectra, readings.spectral_bins, 1, readings.passes * replicates);
+        const std::string& unit = readings.meter.unit;
+        if (unit == "lx") image.attributes["emissiveUnits"] = std::string("W.m^-2.nm^-1");
+        if (unit == "cd") image.attributes["emissiveUnits"] = std::string("W.sr^-1.nm^-1");
+    }
     return image;
 }
 

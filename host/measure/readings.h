@@ -43,14 +43,22 @@ double gamma_angle(const Meter& meter, uint32_t row);
 struct Readings {
     Meter meter;
     std::vector<ExactSum> sums;  // pixel after pixel, replicate after replicate
-    uint64_t passes = 0;         // of each replicate
-    uint64_t forward_paths = 0;  // that have looked for it, in its passes or to probe whether any arrives
+    // Where paths carry wavelengths and bins are asked for, else 0; see render/spectral_film.h.
+    uint32_t spectral_bins = 0;
+    std::vector<ExactSum> spectra;      // pixel after pixel, of all replicates together
+    std::vector<ExactSum> row_spectra;  // row after row, replicate after replicate: its pixels' sum
+    uint64_t passes = 0;                // of each replicate
+    uint64_t forward_paths = 0;         // that have looked for it, in its passes or to probe whether any arrives
 };
 
 using PixelMeans = std::vector<glm::dvec3>;  // linear Rec.709; (1, 1, 1) is one of the meter's units
 PixelMeans replicate_means(const Readings& readings, uint32_t replicate);
 
-// The mean over all replicates as R, G, B, and its standard error as error.R, error.G, error.B.
+// The spectrum of a row's mean pixel in a replicate, a value a bin.
+std::vector<double> row_spectrum(const Readings& readings, uint32_t row, uint32_t replicate);
+
+// The mean over all replicates as R, G, B, and its standard error as error.R, error.G, error.B; with bins the
+// spectra, too.
 Image to_image(const Readings& readings);
 
 }  // namespace etendue

@@ -139,7 +139,7 @@ class Reader {
             value["illuminant"].is_string() ? value["illuminant"].get<std::string>() : "";
         const std::string key = "illuminant " + name;
         if (!find_named_spectrum(key))
-            fail_input("{}/illuminant: {} is none that is known; allowed: A, D65, E, F2, F11", place_,
+            fail_input("{}/illuminant: {} is none that is known; allowed: A, D65, E, F1 to F12", place_,
                        value["illuminant"].dump());
         const SpectralTable table = library_table(key, Outside::zero);
         return table * (1 / xyz_of_radiance(table).y);

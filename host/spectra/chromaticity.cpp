@@ -8,11 +8,6 @@
 namespace etendue {
 namespace {
 
-glm::dvec2 uv_1960(const glm::dvec3& xyz) {
-    const glm::dvec2 uv = chromaticity_uv(xyz);
-    return {uv.x, uv.y * 2 / 3};
-}
-
 glm::dvec2 locus(double mired) {
     return uv_1960(xyz_of_radiance(tabulate([&](double nm) { return blackbody_radiance(1e6 / mired, nm); })));
 }
@@ -23,6 +18,11 @@ glm::dvec2 chromaticity_xy(const glm::dvec3& xyz) { return glm::dvec2(xyz) / (xy
 
 glm::dvec2 chromaticity_uv(const glm::dvec3& xyz) {
     return glm::dvec2(4 * xyz.x, 9 * xyz.y) / (xyz.x + 15 * xyz.y + 3 * xyz.z);
+}
+
+glm::dvec2 uv_1960(const glm::dvec3& xyz) {
+    const glm::dvec2 uv = chromaticity_uv(xyz);
+    return {uv.x, uv.y * 2 / 3};
 }
 
 // Golden-section search in reciprocal temperatures, along which the locus is nearly even.

@@ -3,6 +3,9 @@
 
 #include "host/image/exr.h"
 #include "host/photometry/intensity_distribution.h"
+#include "host/render/spectral_film.h"
+#include "host/spectra/color.h"
+#include "host/spectra/library.h"
 #include "tests/cli/program.h"
 
 using namespace etendue;
@@ -63,6 +66,47 @@ TEST_CASE("a report has the figures, images, tables and a page of every meter") 
     const Run refused = program.run({"measure", "s.gltf", "-o", "mine", "--passes", "16"});
     CHECK(refused.code == 2);
     CHECK(refused.err.find("holds other files") != std::string::npos);
+}
+
+TEST_CASE("with spectral bins, meters tell spectra and colour rendering, in parts as in one") {
+    Executable program;
+    std::string scene = scene_text;
+    const std::string lamp = R"("intensity": 1000)";
+    scene.replace(scene.find(lamp), lamp.size(), R"("intensity": 1000, "color": {"illuminant": "F2"})");
+    write_text(program.folder / "s.gltf", scene);
+    const auto measure = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"measure", "s.gltf", "-q", "--receivers", "plane,away"});
+        return program.run(more);
+    };
+    const Run run = measure({"--passes", "512", "-o", "out", "--spectral-bins", "94"});
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    const std::string figures = text_of(program, "out/figures.csv");
+    const size_t at = figures.find("\nplane,Ra,,");
+    REQUIRE(at != std::string::npos);
+    CHECK(std::stod(figures.substr(at + 11)) == doctest::Approx(64).epsilon(0.02));
+    CHECK(figures.find("\nplane,R14,,") != std::string::npos);
+    CHECK(text_of(program, "out/index.html").find("<td>Ra</td>") != std::string::npos);
+    const Image image = read_exr(program.folder / "out/plane.exr");
+    CHECK(std::get<std::string>(image.attributes.at("emissiveUnits")) == "W.m^-2.nm^-1");
+    REQUIRE(find_channel(image, "S0.362,500000nm") >= 0);
+    // The spectrum of a pixel is worth its lux, by the observer at the bins' middles.
+    double lux = 0;
+    const SpectralTable y = library_table("CIE 1931 y", Outside::zero);
+    for (uint32_t bin = 0; bin < 94; ++bin)
+        lux += 683 * 5 * y.at(362.5 + 5 * bin) *
+               plane(image, size_t(find_channel(image, spectral_channel(bin, 94))))[27];
+    const auto channel = [&](const char* name) {
+        return double(plane(image, size_t(find_channel(image, name)))[27]);
+    };
+    CHECK(lux == doctest::Approx(luminance({channel("R"), channel("G"), channel("B")})).epsilon(0.03));
+
+    CHECK(measure({"--passes", "256:512", "--checkpoint", "b.etd", "--spectral-bins", "94"}).code == 0);
+    CHECK(measure({"--passes", "0:256", "--checkpoint", "a.etd", "--spectral-bins", "94"}).code == 0);
+    REQUIRE(program.run({"merge", "b.etd", "a.etd", "-o", "merged"}).code == 0);
+    CHECK(text_of(program, "merged/figures.csv") == figures);
+    CHECK(measure({"--passes", "16", "-o", "x", "--spectral-bins", "9", "--color", "rgb"})
+              .err.find("--color spectral or auto") != std::string::npos);
 }
 
 TEST_CASE(

@@ -172,7 +172,8 @@ TEST_CASE("spectra are read from tables and files") {
     CHECK(message_of({{"wavelengths", {500, 600}}, {"values", {1}}}, factor).find("as many of both") !=
           std::string::npos);
     CHECK(message_of({{"blackbody", 3}}, factor).find("[100, 1e6] K") != std::string::npos);
-    CHECK(message_of({{"illuminant", "Q"}}, factor).find("allowed: A, D65, E, F2, F11") != std::string::npos);
+    CHECK(message_of({{"illuminant", "Q"}}, factor).find("allowed: A, D65, E, F1 to F12") !=
+          std::string::npos);
     CHECK(message_of({{"sellmeier", {1, 2, 3}}}, factor).find("as many B as C") != std::string::npos);
     CHECK(message_of({{"cauchy", {-3}}}, factor).find("refractive index") != std::string::npos);
     CHECK(message_of("red", factor).find("not a spectral value") != std::string::npos);
