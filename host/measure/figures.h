@@ -22,6 +22,7 @@ struct Interval {
 
 // One value of each replicate, of something whose mean is wanted.
 using Series = std::vector<double>;
+double mean_of(const Series& series);
 Interval mean_interval(const Series& series);
 // Of f(means of the series), by the jackknife. All series are as long.
 Interval function_interval(const std::vector<Series>& series,
@@ -52,6 +53,10 @@ std::vector<MeterPoint> standard_points(uint32_t count);
 
 // Bins of a spectrum below which they are too wide for colour rendering: 10 nm.
 constexpr uint32_t least_rendering_bins = 47;
+
+// Of what all pixels together receive, weighted by `weights`, whose sum is 1: chromaticities, and with bins
+// colour rendering.
+std::vector<Figure> color_figures(const Readings& readings, const std::vector<double>& weights);
 
 // `points`: for uniformity; empty = none.
 std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points);
