@@ -21,7 +21,8 @@
     X(4, DirectionalLight, directional) \
     X(5, ConstantEnvironment, constant) \
     X(6, ImageEnvironment, image)       \
-    X(7, IesLight, ies)
+    X(7, IesLight, ies)                 \
+    X(8, SkyEnvironment, sky)
 
 // folder receivers/, contract interfaces/receiver.glsl
 #define RECEIVER_CLASSES(X)                \

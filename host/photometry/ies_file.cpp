@@ -164,11 +164,29 @@ void mirror_h(std::vector<double>& h, std::vector<std::vector<double>>& of_h) {
     of_h.insert(of_h.begin(), values.begin(), values.end());
 }
 
-void skip_tilt(Numbers& numbers) {
-    numbers.count("the lamp's geometry of TILT", 1, 3);
+// How the lamp's flux changes where the luminaire is tilted. Returns the factor for one that is not: which
+// way a luminaire was measured the file does not say.
+double read_tilt(Numbers& numbers, IntensityDistribution& d) {
+    const size_t geometry = numbers.count("the lamp's geometry of TILT", 1, 3);
     const size_t count = numbers.count("the number of angles of TILT", 1, 1000);
-    for (size_t i = 0; i < count; ++i) numbers.next("an angle of TILT");
-    for (size_t i = 0; i < count; ++i) numbers.next("a factor of TILT");
+    const std::vector<double> angles = numbers.angles("TILT", count, 0, 180);
+    std::vector<double> factors;
+    for (size_t i = 0; i < count; ++i) {
+        factors.push_back(numbers.next("a factor of TILT"));
+        if (!(factors[i] >= 0 && factors[i] <= 10))
+            numbers.fail("factor {} of TILT is {}; must be 0 to 10", i + 1, factors[i]);
+    }
+    const auto [least, most] = std::minmax_element(factors.begin(), factors.end());
+    if (*least == *most && *most == 1) return 1;
+    d.warnings.push_back(
+        fmt::format("TILT: of a lamp that {} the luminaire would send {:g} to {:g} of its light at {:g}° to "
+                    "{:g}°; taken as "
+                    "untilted, {:g}",
+                    geometry == 1   ? "burns base up or down"
+                    : geometry == 2 ? "stays horizontal"
+                                    : "lies horizontally and is tilted with it",
+                    *least, *most, angles.front(), angles.back(), factors.front()));
+    return factors.front();
 }
 
 struct Header {
@@ -223,12 +241,15 @@ IntensityDistribution parse_ies(const std::string& name, std::string bytes) {
     d.description.assign(text.lines.begin() + (line > 0 && year != 1986 ? 1 : 0), text.lines.begin() + line);
     Numbers numbers(text, line + 1);
     const std::string how = upper(tilt);
+    double tilt_factor = 1;
     if (how == "INCLUDE")
-        skip_tilt(numbers);
+        tilt_factor = read_tilt(numbers, d);
     else if (how != "NONE")
-        d.warnings.push_back(fmt::format("TILT={}: that file is not read", tilt));
+        d.warnings.push_back(
+            fmt::format("TILT={}: that file is not read; the lamp is taken as untilted", tilt));
 
-    const Header header = read_header(numbers, year, d);
+    Header header = read_header(numbers, year, d);
+    header.factor *= tilt_factor;
     d.watts = header.watts;
     const char* const types[] = {"", "C", "B", "A"};
     d.type = header.type == 1 ? Type::c : header.type == 2 ? Type::b : Type::a;

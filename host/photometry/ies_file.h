@@ -12,7 +12,8 @@ struct PhotometricLabels {
 };
 
 // Types C, B and A. The plane C0 is along the length of the luminous opening (LM-63-1995), the width across
-// it. What TILT=INCLUDE says of lamps that are tilted is read past.
+// it. Of the factors of TILT=INCLUDE, for luminaires that are tilted, the first one counts, and a warning
+// tells them.
 IntensityDistribution read_ies(const std::filesystem::path& file);
 IntensityDistribution parse_ies(const std::string& name, std::string bytes);  // `name` is for messages
 

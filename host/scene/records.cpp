@@ -6,6 +6,7 @@
 
 #include "host/error.h"
 #include "host/measured/mueller_matrix.h"
+#include "host/scene/sky_record.h"
 
 namespace etendue {
 namespace {
@@ -74,6 +75,8 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
             if (!(glm::length(v) > 0)) fail_input("{}: has no length; allowed: a direction", place);
             store(record, at, glm::vec3(glm::normalize(v)));
         }
+    } else if (type == "SunDirection") {
+        store(record, at, read_sun(value, place));
     } else if (type == "uint" || type == "int") {
         // A bool of GLSL is a uint in a buffer; its default tells them apart.
         if (p.default_value.is_boolean()) {
@@ -167,6 +170,8 @@ std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescriptio
                 store(record, p.member.offset + 12 * column, glm::vec3(m[column]));
         } else if (p.member.type == "MieRef") {  // stands behind what it is made from
             store(record, p.member.offset, resolver.mie(info, record, object.where));
+        } else if (p.member.type == "SkyRef") {
+            store(record, p.member.offset, resolver.sky(info, record, object.where));
         } else if (p.from_scene) {
             const bool given = object.parameters.contains(p.member.name);
             if (!given && p.required)

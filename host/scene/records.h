@@ -2,6 +2,7 @@
 // describes them.
 #pragma once
 #include <cstddef>
+#include <cstring>
 #include <functional>
 #include <glm/glm.hpp>
 #include <map>
@@ -16,6 +17,7 @@
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
 #include "host/lights/environment_map.h"
+#include "host/lights/sky.h"
 #include "host/scene/spectral_value.h"
 
 namespace etendue {
@@ -57,6 +59,10 @@ struct RecordResolver {
     std::function<MieRef(const ClassInfo& info, const std::vector<std::byte>& record,
                          const std::string& where)>
         mie = [](const ClassInfo&, const std::vector<std::byte>&, const std::string&) { return MieRef{}; };
+    // Of a record of the class sky, whose parameters are filled already.
+    std::function<SkyRef(const ClassInfo& info, const std::vector<std::byte>& record,
+                         const std::string& where)>
+        sky = [](const ClassInfo&, const std::vector<std::byte>&, const std::string&) { return SkyRef{}; };
     // RecordRef of the phase function that stands at that place of the scene.
     std::function<uint32_t(const std::string& where)> phase = [](const std::string&) { return 0xFFFFFFFFu; };
     // Index of the table that a spectrum has where paths carry wavelengths.
@@ -73,6 +79,15 @@ constexpr uint32_t record_index(uint32_t ref) { return ref & 0xFFFFFFu; }
 std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescription& object,
                                    const std::optional<glm::dmat4>& placement,
                                    const RecordResolver& resolver);
+
+// A member of a record; it must be there.
+template <class T>
+T record_member(const ClassInfo& info, const std::vector<std::byte>& record, const std::string& name) {
+    T value{};
+    for (const Parameter& p : info.parameters)
+        if (p.member.name == name) std::memcpy(&value, record.data() + p.member.offset, sizeof(T));
+    return value;
+}
 
 // "surface/conductor/roughness".
 std::string member_path(const ClassInfo& info, const std::string& member);

@@ -38,6 +38,8 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     resolver_.measured = [this](const std::filesystem::path& file) { return add_measured(file); };
     resolver_.mueller_table = [this](const std::filesystem::path& file) { return add_mueller_table(file); };
     resolver_.photometry = [this](const std::filesystem::path& file) { return add_photometry(file); };
+    resolver_.sky = [this](const ClassInfo& info, const std::vector<std::byte>& record,
+                           const std::string& where) { return add_sky(info, record, where); };
     resolver_.mie = [this](const ClassInfo& info, const std::vector<std::byte>& record,
                            const std::string& where) { return add_mie(info, record, where); };
 }

@@ -93,6 +93,7 @@ class SceneCompiler {
 
     // scene_lights.cpp
     PhotometryRef add_photometry(const std::filesystem::path& file);
+    SkyRef add_sky(const ClassInfo& info, const std::vector<std::byte>& record, const std::string& where);
     void add_lights();
     const glm::dmat4& placed_transform(uint32_t index) const;
     void drop_dark_triangles(std::vector<uint32_t>& primitives);
@@ -131,7 +132,7 @@ class SceneCompiler {
     std::vector<TextureUse> textures_;
     std::vector<DensityGridRecord> grids_;
     std::vector<glm::dmat4> grid_placements_;  // world_from_lattice
-    bool uses_measured_ = false;
+    bool uses_measured_ = false, has_sky_ = false;
     std::vector<MuellerTable> mueller_tables_;
     SpectralValue surrounding_;  // index of the medium whose phase function is being added
     std::vector<std::shared_ptr<const MieTable>> mie_tables_;

@@ -9,6 +9,7 @@
 #include "host/photometry/ies_file.h"
 #include "host/scene/scene_compiler.h"
 #include "host/scene/scene_files.h"
+#include "host/scene/sky_record.h"
 #include "host/spectra/color.h"
 
 namespace etendue {
@@ -50,6 +51,22 @@ PhotometryRef SceneCompiler::add_photometry(const std::filesystem::path& file) {
         for (const std::string& warning : known->second.warnings)
             out_.warnings.push_back(fmt::format("{}: {}", path.string(), warning));
     return known->second.ref;
+}
+
+// All skies have maps of one size: that of the scene before makes room.
+SkyRef SceneCompiler::add_sky(const ClassInfo& info, const std::vector<std::byte>& record,
+                              const std::string& where) {
+    const std::string place = message_place(in_, where);
+    if (has_sky_) fail_input("{}: is a second sky; allowed: one", place);
+    has_sky_ = true;
+    Sky sky = build_sky(sky_parameters(info, record, place));
+    std::vector<glm::uvec4>& all = memory_.environment_texels;
+    if (!memory_.sky_texels) memory_.sky_texels = uint32_t(all.size());
+    sky.ref.map.first = *memory_.sky_texels;
+    all.resize(std::max(all.size(), *memory_.sky_texels + sky.map.texels.size()));
+    std::copy(sky.map.texels.begin(), sky.map.texels.end(), all.begin() + *memory_.sky_texels);
+    memory_.buffers.erase("EnvironmentTexels");
+    return sky.ref;
 }
 
 // Lights at infinity come first in the list (features/light_selection.glsl).

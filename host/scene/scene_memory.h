@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,7 @@ struct SceneMemory {
     // Files that parameters name: the contents of all of them, one behind the other.
     std::vector<glm::uvec4> environment_texels;  // floats, as bits
     std::map<std::filesystem::path, EnvironmentMapRef> environment_maps;
+    std::optional<uint32_t> sky_texels;  // where in `environment_texels` those of a sky begin
     std::vector<float> photometric_values;
     struct PhotometricFile {
         PhotometryRef ref;

@@ -1,26 +1,10 @@
 // Phase functions of media, and the tables that some are made of.
 #include <algorithm>
-#include <cstring>
 
 #include "host/error.h"
 #include "host/scene/scene_compiler.h"
 
 namespace etendue {
-namespace {
-
-const Parameter& parameter(const ClassInfo& info, const std::string& name) {
-    return *std::find_if(info.parameters.begin(), info.parameters.end(),
-                         [&](const Parameter& p) { return p.member.name == name; });
-}
-
-template <class T>
-T member(const ClassInfo& info, const std::vector<std::byte>& record, const std::string& name) {
-    T value;
-    std::memcpy(&value, record.data() + parameter(info, name).member.offset, sizeof(T));
-    return value;
-}
-
-}  // namespace
 
 // A medium of a class that has no parameter "ior" is as vacuum; so is one whose index its own record will
 // refuse.
@@ -37,12 +21,12 @@ SpectralValue SceneCompiler::index_of(const MediumDescription& medium) {
 MieRef SceneCompiler::add_mie(const ClassInfo& info, const std::vector<std::byte>& record,
                               const std::string& where) {
     const auto spectrum = [&](const char* name, SpectralKind kind) {
-        return spectra_[member<SpectrumRef>(info, record, name).table].first.as_table(kind);
+        return spectra_[record_member<SpectrumRef>(info, record, name).table].first.as_table(kind);
     };
-    const MieParameters p{member<float>(info, record, "radius"), member<float>(info, record, "variance"),
-                          spectrum("ior", SpectralKind::index),
-                          spectrum("absorption_index", SpectralKind::factor),
-                          surrounding_.as_table(SpectralKind::index)};
+    const MieParameters p{
+        record_member<float>(info, record, "radius"), record_member<float>(info, record, "variance"),
+        spectrum("ior", SpectralKind::index), spectrum("absorption_index", SpectralKind::factor),
+        surrounding_.as_table(SpectralKind::index)};
     const double size = largest_mie_size(p);
     if (!(size <= most_mie_size))
         fail_input(

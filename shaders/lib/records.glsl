@@ -8,5 +8,6 @@ struct MediumRef { uint ref; };             // a medium's name -> RecordRef of i
 struct PhaseRef { uint ref; };              // {"class": …} of a phase function -> RecordRef of its record
 struct TextureRef { uint index; };          // a glTF textureInfo -> index of a Texture, NO_RECORD where absent
 struct WorldPoint { vec3 position; };       // [x, y, z] -> m, in the device's world, whose origin is the scene's centre
+struct SunDirection { vec3 unit; };         // [x, y, z], or {"latitude", "longitude", "time"}; 0 where none is given
 struct Direction { vec3 unit; };            // [x, y, z] of any length -> unit vector
 struct Placement { mat4x3 world_from_local; };  // the node's transform; needs no parameter

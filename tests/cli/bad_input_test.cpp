@@ -41,6 +41,13 @@ std::string with_class_file() {
 "evil.glsl"}], "environment")");
 }
 
+// Beside what it needs, a sky has that.
+std::string sky_scene(const std::string& more) {
+    std::string scene = small_scene();
+    const std::string before = R"({"class": "constant", "radiance": 1})";
+    return scene.replace(scene.rfind(before), before.size(), R"({"class": "sky", )" + more + "}");
+}
+
 // A lamp over a meter.
 std::string lamp_scene(const std::string& lamp) {
     return R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "nodes": [
@@ -195,6 +202,37 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          2,
          {"s.gltf", "/nodes/0", "needs the parameter file"},
          lamp_scene(R"({"class": "ies"})")},
+        {"a sky of type 16",
+         render,
+         2,
+         {"s.gltf", "/extensions/ETD_optics/environment/type", "[1, 15]"},
+         sky_scene(R"("diffuse": 1, "type": 16)")},
+        {"a clear sky without its sun",
+         render,
+         2,
+         {"s.gltf", "/extensions/ETD_optics/environment", "lacks sun, which a sky of type 12 needs"},
+         sky_scene(R"("diffuse": 1)")},
+        {"light of a sun that has set",
+         render,
+         2,
+         {"s.gltf", "/environment/sun", "5.74° below the horizon"},
+         sky_scene(R"("type": 1, "diffuse": 1, "direct": 1, "sun": [1, -0.1005, 0])")},
+        {"a sun by direction and place",
+         render,
+         2,
+         {"s.gltf", "/environment/sun/direction", "latitude, longitude, time, north"},
+         sky_scene(R"("diffuse": 1, "sun": {"direction": [0, 1, 0], "latitude": 48})")},
+        {"a sun at a moment without zone",
+         render,
+         2,
+         {"s.gltf", "/environment/sun/time", "with its zone"},
+         sky_scene(
+             R"("diffuse": 1, "sun": {"latitude": 48, "longitude": 11, "time": "2026-06-21T12:00:00"})")},
+        {"a black sky",
+         render,
+         2,
+         {"s.gltf", "/environment/color", "black"},
+         sky_scene(R"("type": 5, "diffuse": 1, "color": 0)")},
         {"a class file that nobody allowed",
          render,
          2,

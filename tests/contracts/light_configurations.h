@@ -70,6 +70,16 @@ inline std::vector<LightConfiguration> light_configurations(const std::string& n
             {"7 x 5, turned", {{"file", "f"}, {"rotation", 1.234}}, glm::dmat4(1.0), probe_image(7, 5), {}},
             {"64 x 32", {{"file", "f"}, {"rotation", -2}}, glm::dmat4(1.0), probe_image(64, 32), {}},
             {"1 x 1", {{"file", "f"}}, glm::dmat4(1.0), probe_image(1, 1), {}}};
+    if (name == "sky")  // without the sun: its disk is finer than any cells (sky_test.cpp)
+        return {
+            {"uniform, black ground", {{"type", 5}, {"diffuse", 3}, {"ground", 0}}, glm::dmat4(1.0), {}, {}},
+            {"overcast", {{"type", 1}, {"diffuse", 3}, {"color", {1, 0.5, 2}}}, glm::dmat4(1.0), {}, {}},
+            {"clear", {{"type", 12}, {"diffuse", 3}, {"sun", {0.5, 0.3, 0.7}}}, glm::dmat4(1.0), {}, {}},
+            {"polluted, low sun",
+             {{"type", 15}, {"diffuse", 3}, {"sun", {-1, 0.05, 0.2}}},
+             glm::dmat4(1.0),
+             {},
+             {}}};
     if (name == "ies") {
         std::vector<LightConfiguration> all;
         for (const char* file : {"own_asym_0_360.ies", "own_lambert_type_b_quarter.ies"})

@@ -217,7 +217,16 @@ TEST_CASE("photometry: wild forms are read") {
     const IntensityDistribution d = folder.read(ies(
         "2 3 0 45 90\n1 0.9 0.8\n1 -1 1 2 1 1 2 0 0 0\n1 1 10 0 90 0 1000 500", "IESNA91", "TILT=INCLUDE"));
     CHECK(d.peak() == 1000);
-    CHECK(d.warnings.empty());
+    REQUIRE(d.warnings.size() == 1);
+    check_says(d.warnings[0], {"stays horizontal", "0.8 to 1", "0° to 90°", "untilted, 1"});
+    const auto tilted = [&](const std::string& factors) {
+        return ies(factors + "\n1 -1 1 2 1 1 2 0 0 0\n1 1 10 0 90 0 1000 500", "IESNA91", "TILT=INCLUDE");
+    };
+    CHECK(folder.read(tilted("1 2 0 90 0.5 1")).peak() == 500);
+    CHECK(folder.read(tilted("1 2 0 90 1 1")).warnings.empty());
+    check_says(folder.complaint(tilted("1 2 90 0 1 1")), {"must rise"});
+    check_says(folder.complaint(tilted("4 2 0 90 1 1")), {"geometry"});
+    check_says(folder.complaint(tilted("1 2 0 90 1 -1")), {"must be 0 to 10"});
     CHECK(folder.read(ies("1 -1 1 2 1 1 2 0 0 0 1 1 10 0 90 0 1000 500", "Maker's own", "TILT=lamp.tlt"))
               .warnings.size() == 1);
     CHECK(folder.read(ies("1 -1 1 2 1 1 2 0 0 0 1 0 10 0 90 0 1000 -5", "IESNA91")).warnings.size() == 2);

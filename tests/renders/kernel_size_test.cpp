@@ -128,6 +128,18 @@ TEST_CASE("kernels of the example scenes are within the budget") {
     CHECK(scenes >= 19);
 }
 
+TEST_CASE("kernels of films and of many materials under a sky with a sun are within the budget") {
+    for (const char* name : {"films", "materials", "iced_water"}) {
+        nlohmann::json scene =
+            nlohmann::json::parse(read_text(source_path("scenes/" + std::string(name) + ".gltf")));
+        scene["extensions"]["ETD_optics"]["environment"] = {
+            {"class", "sky"}, {"diffuse", 1}, {"direct", 3}, {"sun", {1, 1, 1}}};
+        const TemporaryFolder folder;
+        write_text(folder / "scene.gltf", scene.dump());
+        check_sizes(folder / "scene.gltf", name);
+    }
+}
+
 // What it lacks costs nothing: 70 and 72 kB when features became modules, the same as before.
 TEST_CASE("kernels of scenes without features hold nothing of them") {
     for (const char* name : {"cornell_box", "furnace_closed"}) {

@@ -2,6 +2,7 @@
 
 #include "host/lights/environment_map.h"
 #include "host/scene/records.h"
+#include "host/scene/sky_record.h"
 #include "tests/support/source_path.h"
 
 namespace etendue {
@@ -70,6 +71,12 @@ LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& para
                             }};
     resolver.photometry = [&](const std::filesystem::path& file) {
         return append_photometric_table(photometric, read_photometric_file(file));
+    };
+    resolver.sky = [&](const ClassInfo& sky_class, const std::vector<std::byte>& record, const std::string&) {
+        Sky sky = build_sky(sky_parameters(sky_class, record, "/light"));
+        sky.ref.map.first = uint32_t(texels.size());
+        texels.insert(texels.end(), sky.map.texels.begin(), sky.map.texels.end());
+        return sky.ref;
     };
     RecordBuffer records;
     records.add(*info, fill_record(*info, {class_name, parameters, "/light"}, placement, resolver));
