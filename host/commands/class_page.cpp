@@ -91,7 +91,8 @@ std::string type_name(const Parameter& p) {
                                                              {"MuellerTableRef", "file"},
                                                              {"PhotometryRef", "file"},
                                                              {"WorldPoint", "point"},
-                                                             {"Direction", "direction"}};
+                                                             {"Direction", "direction"},
+                                                             {"SunDirection", "direction, or place and time"}};
     if (p.default_value.is_boolean()) return "true or false";  // a bool of GLSL is a uint in a buffer
     const auto found = names.find(p.member.type);
     return found == names.end() ? p.member.type : found->second;

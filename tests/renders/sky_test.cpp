@@ -75,5 +75,5 @@ TEST_CASE("in a court under sky and sun, backward, forward and both ways agree")
               {{0, 0.01, 0}, facing_up});
     Scene scene = compile_test_scene(s.import());
     check_against_backward(scene,
-                           {.backward = 256, .forward = 256, .bidirectional = 64, .receiver = "meter"});
+                           {.backward = 256, .forward = 1024, .bidirectional = 64, .receiver = "meter"});
 }
