@@ -43,3 +43,45 @@ TEST_CASE("a light pipe passes on all that enters, at angles from grazing its wa
         CHECK(std::fabs(seen.mean - expected) < 5 * seen.standard_error);
     }
 }
+
+// Ridges of 90 degrees under a flat face, which is lit and seen head-on: both flanks reflect totally where
+// the index is above the root of 2, and all light returns.
+TEST_CASE("a prism film sends back all light that comes straight on, if its index is above 1.414") {
+    const int ridges = 8;
+    std::vector<glm::vec3> positions;  // of each end of the film: face and back, from left to right
+    for (const float y : {-20.0f, 20.0f})
+        for (int i = 0; i <= 2 * ridges; ++i) {
+            const float x = 0.5f * float(i - ridges);
+            positions.push_back({x, y, 0});
+            positions.push_back({x, y, i % 2 ? -0.7f : -0.2f});
+        }
+    const uint32_t end = uint32_t(positions.size()) / 2;
+    std::vector<uint32_t> indices;
+    const auto quad = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
+        indices.insert(indices.end(), {a, b, c, a, c, d});
+    };
+    for (uint32_t i = 0; i < 4 * ridges; i += 2) {
+        quad(i, i + 2, end + i + 2, end + i);          // the face
+        quad(i + 1, end + i + 1, end + i + 3, i + 3);  // a flank
+        quad(i, i + 1, i + 3, i + 2);                  // both ends
+        quad(end + i, end + i + 2, end + i + 3, end + i + 1);
+    }
+    quad(0, end, end + 1, 1);
+    quad(end - 2, end - 1, 2 * end - 1, 2 * end - 2);
+    const auto seen = [&](double ior) {
+        SceneBuilder s;
+        s.medium("plastic", {{"ior", ior}});
+        s.mesh(positions, indices,
+               s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "plastic"}}), at(0, 0, 0));
+        s.rectangle(60, 60, s.black_emitter(1), {{0, 0, 5}, {0, 1, 0, 0}});
+        s.orthographic(1.7, at(0.1, 0, 2));
+        RenderPlan plan;
+        plan.width = plan.height = 16, plan.passes = 256;
+        return window_mean(render_estimates(s.import(), plan));
+    };
+    for (const double ior : {1.49, 1.586}) {
+        CAPTURE(ior);
+        CHECK(seen(ior).mean == doctest::Approx(1).epsilon(1e-4));
+    }
+    CHECK(seen(1.40).mean < 0.5);
+}
