@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "host/scene/live_scene.h"
 #include "tests/renders/agreement_scenes.h"
 #include "tests/renders/algorithm_comparison.h"
 
@@ -76,4 +77,45 @@ TEST_CASE("in a court under sky and sun, backward, forward and both ways agree")
     Scene scene = compile_test_scene(s.import());
     check_against_backward(scene,
                            {.backward = 256, .forward = 1024, .bidirectional = 64, .receiver = "meter"});
+}
+
+TEST_CASE(
+    "a sky that is edited shines as one of a file with the new values, and the one before it as before") {
+    const auto court = [](const json& sky) {
+        SceneBuilder s;
+        s.optics()["environment"] = sky;
+        s.sphere(0.5, s.lambertian(0.5), at(0, 0, 0));
+        add_meter(s, {{"class", "illuminance"}, {"size", {2, 2}}, {"resolution", {8, 8}}},
+                  {{0, -0.6, 0}, facing_up});
+        return s;
+    };
+    const auto read = [](Scene& scene) {
+        RenderPlan plan;
+        plan.width = plan.height = 8, plan.passes = 64, plan.seeds = 2;
+        return window_mean(render_estimates(scene, plan)).mean;
+    };
+    const TemporaryFolder folder;
+    json sky = clear_sky();
+    write_text(folder / "scene.gltf", court(sky).document.dump());
+    LiveScene live(test_device(), folder / "scene.gltf", test_options());
+    const std::shared_ptr<Scene> before = live.scene();
+    const double lux = read(*before);
+    const auto objects = live.objects();
+    const auto environment = std::find_if(objects.begin(), objects.end(), [](const LiveObject& o) {
+        return o.part == LiveObject::Part::environment;
+    });
+    REQUIRE(environment != objects.end());
+    for (const auto& [name, value] :
+         {std::pair<std::string, json>("sun", {-0.2, 0.9, 0.1}), {"type", 3}, {"direct", 0}}) {
+        CAPTURE(name);
+        sky[name] = value;
+        const std::shared_ptr<Scene> next = live.set_parameter(*environment, name, value);
+        live.accept();
+        Scene fresh = compile_test_scene(court(sky).import());
+        const double now = read(*next);
+        CHECK(now == doctest::Approx(read(fresh)).epsilon(1e-4));
+        CHECK(std::fabs(now - lux) > 0.01 * lux);
+    }
+    CHECK(read(*before) == doctest::Approx(lux).epsilon(1e-6));
+    CHECK_THROWS(live.set_parameter(*environment, "type", 16));
 }
