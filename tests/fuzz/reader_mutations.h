@@ -8,6 +8,7 @@
 #include "host/measured/measured_bsdf.h"
 #include "host/measured/mueller_table.h"
 #include "host/photometry/photometric_table.h"
+#include "host/photometry/ray_set.h"
 #include "host/scene/density_bricks.h"
 #include "host/scene/spectral_value.h"
 #include "tests/fuzz/import_mutations.h"
@@ -96,6 +97,35 @@ inline void check_lamp(const std::filesystem::path& file) {
     require_finite(values, "tables are finite");
 }
 
+inline void check_rays(const std::filesystem::path& file) {
+    const RayFile rays = read_ray_file(file);
+    for (const Ray& ray : rays.rays) {
+        require_finite({&ray.position.x, 3}, "rays start somewhere");
+        if (!(std::abs(glm::length(ray.direction) - 1) < 1e-5f))
+            throw std::logic_error("directions are unit vectors");
+        if (!(ray.flux >= 0 && ray.flux < 1e31f))
+            throw std::logic_error("fluxes are finite and not negative");
+    }
+    for (const auto* each : {&rays.lumens, &rays.wavelengths})
+        if (!each->empty() && each->size() != rays.rays.size())
+            throw std::logic_error("each ray has its numbers");
+    std::vector<uint32_t> words;
+    const RaySet set = append_ray_set(words, rays);
+    if (!(set.ref.flux >= 0 && set.ref.flux < 1e38f)) throw std::logic_error("a flux is finite");
+    for (const SpectralValue& color : set.colors) {
+        require_finite({&color.rgb.x, 3}, "colours of rays are finite");
+        if (color.table) require_finite(color.table->values, "spectra of rays are finite");
+    }
+    if (set.ref.uneven)
+        for (size_t i = 0; i < set.ref.count; ++i)
+            if (words[2 * i] > 1u << 24 || words[2 * i + 1] >= set.ref.count)
+                throw std::logic_error("an alias table leads to rays");
+}
+
+inline std::string ray_bytes(const std::string& name) {
+    return read_text(source_path("tests/host/rays/" + name));
+}
+
 inline std::string photometric_bytes(const std::string& name) {
     return read_text(source_path("tests/host/photometry/" + name));
 }
@@ -173,6 +203,12 @@ inline std::vector<FuzzedReader> fuzzed_readers(const TemporaryFolder& folder) {
             {"lamp.ies", photometric_bytes("own_lambert_1986_commas_feet.ies"), check_lamp},
             {"floodlight.ies", photometric_bytes("own_lambert_type_b_quarter.ies"), check_lamp},
             {"lamp.ldt", photometric_bytes("own_isym4_asym.ldt"), check_lamp},
+            {"table.tm25ray", ray_bytes("own_3rays_two_spectra.tm25ray"), check_rays},
+            {"lines.tm25ray", ray_bytes("own_3rays_wavelength.tm25ray"), check_rays},
+            {"led.sdf", ray_bytes("own_3rays_zemax_spectral.sdf"), check_rays},
+            {"led.txt", "2 4\n1 2 3 0 0.6 0.8 0.5 0.55\n0 0 0 0 0 -1 1 0.45\n", check_rays},
+            {"lighttools.ray", ray_bytes("own_3rays_lighttools_watt.ray"), check_rays},
+            {"speos.ray", ray_bytes("own_3rays_speos.ray"), check_rays},
             {"state", checkpoint_bytes(folder), check_checkpoint, seal_checkpoint}};
 }
 
