@@ -23,7 +23,7 @@ if [ -d "$folder" ] && [ ! -e "$folder/images.txt" ] && [ -n "$(ls -A "$folder")
     exit 2
 fi
 rm -rf "$folder"
-mkdir -p "$folder"/{bin,lib/common,scenes,reference,expected,tests/kernels}
+mkdir -p "$folder"/{bin,lib/common,scenes,reference,expected,tests/kernels,tests/host}
 folder=$(cd "$folder" && pwd)
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -49,6 +49,7 @@ gzip -9c "$(ldconfig -p | awk -v name=$layer '$1 == name { print $NF; exit }')" 
 # What the tests read of the checkout, and their list, the longest first: they run side by side.
 cp -r "$root/shaders" "$folder"
 cp "$root"/tests/kernels/*.comp "$folder/tests/kernels"
+cp -r "$root"/tests/host/{photometry,rays} "$folder/tests/host"
 long=(contracts/surface contracts/external_light)
 printf '%s\n' "${long[@]}" >"$folder/tests.txt"
 for file in "$root"/tests/{kernels,contracts}/*_test.cpp; do

@@ -90,6 +90,7 @@ std::string type_name(const Parameter& p) {
                                                              {"MuellerMatrix", "16 numbers"},
                                                              {"MuellerTableRef", "file"},
                                                              {"PhotometryRef", "file"},
+                                                             {"RayFileRef", "file"},
                                                              {"WorldPoint", "point"},
                                                              {"Direction", "direction"},
                                                              {"SunDirection", "direction, or place and time"}};

@@ -61,7 +61,7 @@ int inspect_command(const InspectOptions& options) {
     fmt::print("lights     {} ({} at infinity), {:.6g} lm, selected by {}\n", scene.lights,
                scene.features.infinite_light_count, scene.power,
                scene.features.light_tree ? "a tree" : "a list");
-    for (const auto& [file, summary] : scene.photometric_files)
+    for (const auto& [file, summary] : scene.lamp_files)
         fmt::print("lamp       {}: {}\n", printable(file.string()), printable(summary));
     fmt::print("receivers ");
     for (const Receiver& receiver : scene.receivers)

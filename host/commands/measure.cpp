@@ -11,6 +11,7 @@
 #include "host/interrupt.h"
 #include "host/measure/report.h"
 #include "host/progress.h"
+#include "host/render/automatic.h"
 
 namespace etendue {
 namespace {
@@ -68,6 +69,9 @@ int measure_command(const MeasureOptions& options) {
     settings.spectral_bins = options.spectral_bins;
     MeasurementRun run(*opened.device, scene, choose_meters(scene, options), settings);
     Measurement& measurement = run.measurement();
+    if (const std::string missed = missed_light(scene, measurement.meters[0].choice.algorithm);
+        !missed.empty())
+        show_note(progress, "warning: " + missed);
     const nlohmann::json identity = measurement_identity(source_hashes(opened, options), options, scene, run);
     std::vector<std::string> devices = {device_text(*opened.device)};
     if (!options.resume.empty()) {

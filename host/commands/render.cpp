@@ -15,6 +15,7 @@
 #include "host/image/polarization.h"
 #include "host/interrupt.h"
 #include "host/progress.h"
+#include "host/render/automatic.h"
 #include "host/render/renderer.h"
 
 namespace etendue {
@@ -140,6 +141,8 @@ int render_command(const RenderOptions& options) {
     renderer->begin_at(options.first_pass);
     if (const std::string note = checkpoints.restore(*renderer); !note.empty()) show_note(progress, note);
     if (const std::string& note = chooses.note(); !note.empty()) show_note(progress, note);
+    if (const std::string missed = missed_light(scene, renderer->choice().algorithm); !missed.empty())
+        show_note(progress, "warning: " + missed);
     const double setup_seconds = seconds_since(start);
 
     RenderStatus status;

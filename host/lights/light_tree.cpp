@@ -234,8 +234,10 @@ struct Builder {
 }  // namespace
 
 bool is_at_infinity(const LightBounds& light) { return light.lo.x > light.hi.x; }
+bool is_unmet(const LightBounds& light) { return light.cos_emission > 1; }
 
 float peak_intensity(const LightBounds& light) {
+    if (is_unmet(light)) return 0;
     const double measure = orientation_measure(safe_acos(light.cos_normals), safe_acos(light.cos_emission));
     return float(light.power / std::max(measure, 1e-12));
 }

@@ -19,6 +19,8 @@ struct LightBounds {
 static_assert(sizeof(LightBounds) == 48);
 
 bool is_at_infinity(const LightBounds& light);
+// Forward rays alone bring its light: unmet_rays() of shaders/interfaces/light_source.glsl.
+bool is_unmet(const LightBounds& light);
 
 // Four sets of lights; mirrors struct LightNode of light_selection.glsl.
 struct LightNode {

@@ -1,6 +1,7 @@
 #include "host/render/automatic.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -92,6 +93,9 @@ std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene
         choice.reason = "no light";
         return choice;
     }
+    if (!scene.unmet_lights.empty())
+        return choose_both_ways(
+            views, fmt::format("forward rays alone bring the light of {}", scene.unmet_lights[0]));
     for (const Receiver& receiver : scene.receivers)
         for (const FilmView& view : views)
             if (receiver.ref == view.receiver && receiver.info->is_far)
@@ -105,6 +109,13 @@ std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene
     if (lights.any) return {};
     choice.reason = "no light is compact";
     return choice;
+}
+
+std::string missed_light(const Scene& scene, Algorithm algorithm) {
+    if (algorithm != Algorithm::backward || scene.unmet_lights.empty()) return {};
+    return fmt::format(
+        "backward rays find no light of {}: it is left out; --algorithm forward or bidirectional brings it",
+        fmt::join(scene.unmet_lights, ", "));
 }
 
 AlgorithmChoice choose_algorithm(Device& device, Scene& scene, const RenderSettings& settings,

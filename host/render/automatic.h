@@ -9,7 +9,8 @@
 namespace etendue {
 
 // Backward rays alone where no surface scatters into narrow lobes, nor a medium the light of points or narrow
-// beams, or no light is compact: then they find all light. Elsewhere a pilot renders a small image both ways.
+// beams, or no light is compact: then they find all light. Both ways where a light has rays that only forward
+// ones bring. Elsewhere a pilot renders a small image both ways.
 // Backward rays are trusted only where both images agree (they may have missed a caustic altogether); then
 // the smaller error at equal time wins. For bidirectional rendering the pilot also measures how the variance
 // of a pixel depends on the number of forward paths, a sum of one term for each direction (Ershov & Voloboy
@@ -27,5 +28,7 @@ std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene
                                                     const std::vector<FilmView>& views);
 // Both ways for want of a pilot, with so many forward paths that the device is busy.
 AlgorithmChoice choose_both_ways(const std::vector<FilmView>& views, std::string reason);
+// A warning where the algorithm leaves out light that only forward rays bring; else empty.
+std::string missed_light(const Scene& scene, Algorithm algorithm);
 
 }  // namespace etendue

@@ -49,8 +49,9 @@ SpectralKind spectral_kind(const Parameter& p, Interface interface) {
 }
 
 // One parameter, from its JSON value, into the record.
-void fill_parameter(const Parameter& p, const json& value, const std::string& where, Interface interface,
+void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value, const std::string& where,
                     const RecordResolver& resolver, std::vector<std::byte>& record) {
+    const Interface interface = info.interface;
     const std::string& type = p.member.type;
     const uint32_t at = p.member.offset;
     const std::string place = message_place(resolver.scene, where);
@@ -132,6 +133,9 @@ void fill_parameter(const Parameter& p, const json& value, const std::string& wh
     } else if (type == "PhotometryRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of an .ies or .ldt file", place);
         store(record, at, resolver.photometry(value.get<std::string>()));
+    } else if (type == "RayFileRef") {
+        if (!value.is_string()) fail_input("{}: allowed: the name of a ray file", place);
+        store(record, at, resolver.rays(value.get<std::string>(), info, record, where));
     } else if (type == "MuellerTableRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of a .pbsdf file", place);
         store(record, at, resolver.mueller_table(value.get<std::string>()));
@@ -178,8 +182,8 @@ std::vector<std::byte> fill_record(const ClassInfo& info, const ObjectDescriptio
                 fail_input("{}: {} {} needs the parameter {}; {}",
                            message_place(resolver.scene, object.where), interface_info(info.interface).name,
                            info.name, p.member.name, p.text);
-            fill_parameter(p, given ? object.parameters[p.member.name] : p.default_value,
-                           object.where + "/" + p.member.name, info.interface, resolver, record);
+            fill_parameter(info, p, given ? object.parameters[p.member.name] : p.default_value,
+                           object.where + "/" + p.member.name, resolver, record);
         }
     }
     return record;

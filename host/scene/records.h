@@ -14,6 +14,7 @@
 #include "host/measured/measured_bsdf.h"
 #include "host/mie/mie_table.h"
 #include "host/photometry/photometric_table.h"
+#include "host/photometry/ray_set.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
 #include "host/lights/environment_map.h"
@@ -55,6 +56,11 @@ struct RecordResolver {
         [](const std::filesystem::path&) { return 0u; };
     std::function<PhotometryRef(const std::filesystem::path& file)> photometry =
         [](const std::filesystem::path&) { return PhotometryRef{}; };
+    // The rays of a file, for a record whose parameters before that are filled already.
+    std::function<RayFileRef(const std::filesystem::path& file, const ClassInfo& info,
+                             const std::vector<std::byte>& record, const std::string& where)>
+        rays = [](const std::filesystem::path&, const ClassInfo&, const std::vector<std::byte>&,
+                  const std::string&) { return RayFileRef{}; };
     // The table of a record of the class mie, whose parameters are filled already.
     std::function<MieRef(const ClassInfo& info, const std::vector<std::byte>& record,
                          const std::string& where)>

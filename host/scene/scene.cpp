@@ -40,6 +40,9 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     resolver_.photometry = [this](const std::filesystem::path& file) { return add_photometry(file); };
     resolver_.sky = [this](const ClassInfo& info, const std::vector<std::byte>& record,
                            const std::string& where) { return add_sky(info, record, where); };
+    resolver_.rays = [this](const std::filesystem::path& file, const ClassInfo& info,
+                            const std::vector<std::byte>& record,
+                            const std::string& where) { return add_rays(file, info, record, where); };
     resolver_.mie = [this](const ClassInfo& info, const std::vector<std::byte>& record,
                            const std::string& where) { return add_mie(info, record, where); };
 }

@@ -68,8 +68,10 @@ struct Scene {
     glm::dvec3 center{0};  // of the device's world coordinates
     float radius = 0;      // m, of a sphere around everything
     double power = 0;      // of all lights, lm
-    // Of each photometric file in use, what it holds: a line.
-    std::map<std::filesystem::path, std::string> photometric_files;
+    // Of each photometric and each ray file in use, what it holds: a line.
+    std::map<std::filesystem::path, std::string> lamp_files;
+    // Of lights whose light forward rays alone bring: their names.
+    std::vector<std::string> unmet_lights;
     // That records refer to, radiances in units of even_luminance; the first is white light. Empty in
     // colours.
     std::vector<SpectralTable> spectra;

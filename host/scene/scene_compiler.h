@@ -94,6 +94,10 @@ class SceneCompiler {
     // scene_lights.cpp
     PhotometryRef add_photometry(const std::filesystem::path& file);
     SkyRef add_sky(const ClassInfo& info, const std::vector<std::byte>& record, const std::string& where);
+    RayFileRef add_rays(const std::filesystem::path& file, const ClassInfo& info,
+                        const std::vector<std::byte>& record, const std::string& where);
+    void describe_lamp_file(const std::filesystem::path& file, const std::string& summary,
+                            const std::vector<std::string>& warnings);
     void add_lights();
     const glm::dmat4& placed_transform(uint32_t index) const;
     void drop_dark_triangles(std::vector<uint32_t>& primitives);
@@ -138,6 +142,7 @@ class SceneCompiler {
     std::vector<std::shared_ptr<const MieTable>> mie_tables_;
     std::vector<MaterialRecord> materials_;
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
+    std::vector<SpectrumRef> ray_colors_;                          // of ray files
     std::map<std::string, uint32_t> phases_;                       // RecordRefs, by their places in the scene
     std::vector<uint32_t> lights_;                                 // RecordRefs
     std::vector<std::string> light_names_;                         // in the same order

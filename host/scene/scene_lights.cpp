@@ -7,6 +7,7 @@
 #include "host/lights/emission_choice.h"
 #include "host/lights/emission_texture.h"
 #include "host/photometry/ies_file.h"
+#include "host/photometry/ray_set.h"
 #include "host/scene/scene_compiler.h"
 #include "host/scene/scene_files.h"
 #include "host/scene/sky_record.h"
@@ -47,9 +48,7 @@ PhotometryRef SceneCompiler::add_photometry(const std::filesystem::path& file) {
                     .emplace(path, SceneMemory::PhotometricFile{ref, photometric_summary(d), d.warnings})
                     .first;
     }
-    if (out_.photometric_files.emplace(path, known->second.summary).second)
-        for (const std::string& warning : known->second.warnings)
-            out_.warnings.push_back(fmt::format("{}: {}", path.string(), warning));
+    describe_lamp_file(path, known->second.summary, known->second.warnings);
     return known->second.ref;
 }
 
@@ -67,6 +66,55 @@ SkyRef SceneCompiler::add_sky(const ClassInfo& info, const std::vector<std::byte
     std::copy(sky.map.texels.begin(), sky.map.texels.end(), all.begin() + *memory_.sky_texels);
     memory_.buffers.erase("EnvironmentTexels");
     return sky.ref;
+}
+
+void SceneCompiler::describe_lamp_file(const std::filesystem::path& file, const std::string& summary,
+                                       const std::vector<std::string>& warnings) {
+    if (!out_.lamp_files.emplace(file, summary).second) return;
+    for (const std::string& warning : warnings)
+        out_.warnings.push_back(fmt::format("{}: {}", file.string(), warning));
+}
+
+// Watts without spectra are those of light of the record's colour.
+RayFileRef SceneCompiler::add_rays(const std::filesystem::path& file, const ClassInfo& info,
+                                   const std::vector<std::byte>& record, const std::string& where) {
+    const std::filesystem::path path = named_file(in_, file);
+    auto known = memory_.ray_files.find(path);
+    if (known == memory_.ray_files.end()) {
+        known = memory_.ray_files.emplace(path, append_ray_set(memory_.ray_words, read_ray_file(path))).first;
+        memory_.buffers.erase("RayWords");
+    }
+    const RaySet& set = known->second;
+    RayFileRef ref = set.ref;
+    const auto member = [&]<class T>(const char* name, T value) {
+        for (const Parameter& p : info.parameters)
+            if (p.member.name == name) std::memcpy(&value, record.data() + p.member.offset, sizeof value);
+        return value;
+    };
+    const auto color = member("color", SpectrumRef{});
+    const auto flux = member("flux", 0.0f);  // instead of the file's
+    const SpectralValue& value = spectra_.at(color.table).first;
+    if (!set.colors.empty() && value != SpectralValue{glm::vec3(1), {}})
+        fail_input("{}: {} has spectra of its own; allowed: no color", message_place(in_, where),
+                   path.string());
+    std::vector<std::string> warnings = set.warnings;
+    if (set.colors.empty()) {
+        const double y = value.table ? xyz_of_radiance(*value.table).y : luminance(glm::dvec3(value.rgb));
+        if (!(y > 0)) fail_input("{}: the color of its rays must not be black", message_place(in_, where));
+        ref.scale = float(1 / y);
+        if (!set.lumens) {
+            const double efficacy = luminous_efficacy(value);
+            ref.flux = float(set.watts * efficacy);
+            if (flux == 0)
+                warnings.push_back(fmt::format(
+                    "tells watts and no wavelengths: taken for light of its color, {:.4g} lm/W", efficacy));
+        }
+    }
+    ref.first_color = uint32_t(ray_colors_.size());
+    for (const SpectralValue& of_rays : set.colors)
+        ray_colors_.push_back({of_rays.rgb, add_spectrum(of_rays, SpectralKind::radiance)});
+    describe_lamp_file(path, set.summary, warnings);
+    return ref;
 }
 
 // Lights at infinity come first in the list (features/light_selection.glsl).
@@ -163,7 +211,11 @@ void SceneCompiler::measure_lights() {
     for (const InterfaceInfo& interface : all_interfaces())
         upload(interface.buffer, records_[interface.interface].bytes());
     share("EnvironmentTexels", memory_.environment_texels);
-    if (!out_.photometric_files.empty()) share("PhotometricValues", memory_.photometric_values);
+    if (!memory_.photometric_values.empty()) share("PhotometricValues", memory_.photometric_values);
+    if (!memory_.ray_words.empty()) {
+        share("RayWords", memory_.ray_words);
+        upload("RayColors", ray_colors_);
+    }
     upload("Materials", materials_);
     upload_world();
     upload("Lights", lights_);
@@ -199,6 +251,7 @@ void SceneCompiler::measure_lights() {
                 : out_.placed_names[out_.placed->at(area_primitives_[i - first_area_light_])]);
         sorted_bounds.push_back(bounds[i]);
         powers.push_back(bounds[i].power);
+        if (is_unmet(bounds[i])) out_.unmet_lights.push_back(light_names_[i]);
         out_.power += bounds[i].power;
         if (i >= first_area_light_) positions[area_primitives_[i - first_area_light_]] = position;
     }

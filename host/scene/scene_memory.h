@@ -16,6 +16,7 @@
 #include "host/mie/mie_table.h"
 #include "host/scene/classes.h"
 #include "host/photometry/photometric_table.h"
+#include "host/photometry/ray_set.h"
 #include "host/scene/density_bricks.h"
 #include "host/lights/emission_map.h"
 #include "host/lights/environment_map.h"
@@ -41,6 +42,8 @@ struct SceneMemory {
         std::vector<std::string> warnings;
     };
     std::map<std::filesystem::path, PhotometricFile> photometric_files;
+    std::vector<uint32_t> ray_words;
+    std::map<std::filesystem::path, RaySet> ray_files;
     DensityBricks density_bricks;
     struct DensityFile {
         DensityGridRecord record;

@@ -18,7 +18,7 @@
 //
 // Densities of rays are per étendue, projected area times solid angle, so that they are the same for a ray wherever on it
 // they are taken, and nothing tells lights at infinity from others (Veach 1997, section 4.1). Delta lights have the
-// density over what is left to choose: the solid angle of a point, the area of parallel rays.
+// density over what is left to choose: the solid angle of a point, the area of parallel rays, nothing of single rays.
 #include "lib/accurate_math.glsl"
 #include "lib/constants.glsl"
 #include "features/spectrum.glsl"
@@ -43,9 +43,10 @@ struct EmittedRay {
     vec3 error;         // bound of the distance from the exact surface, per axis, m; 0 where there is no surface
     vec3 normal;        // unit, of the surface, on the side that the ray leaves; the direction where there is no surface
     vec3 direction;     // unit, the way the light travels
-    Spectrum radiance;  // along the ray; delta positions: luminous intensity; delta directions: irradiance as above
-    float pdf;          // density, 1/(m² sr); delta positions: 1/sr; delta directions: 1/m²; 0 = no ray. radiance / pdf is
-                        // the flux that the ray carries
+    Spectrum radiance;  // along the ray; delta positions: luminous intensity; delta directions: irradiance as above; single
+                        // rays, which are drawn by their flux: the flux of all
+    float pdf;          // density, 1/(m² sr); delta positions: 1/sr; delta directions: 1/m²; single rays: 1; 0 = no ray.
+                        // radiance / pdf is the flux that the ray carries
     bool is_delta;      // rays can never hit the light
     bool front;         // leaves on the side of the surface's geometric normal; true where there is no surface
 };
@@ -81,10 +82,14 @@ vec3 outer_disk_point(SceneBounds bounds, vec3 direction, vec2 u) {
 struct LightCone {
     vec3 axis;            // unit
     float cos_normals;    // cos n; -1 = all directions
-    float cos_emission;   // cos e; 0 for a surface
+    float cos_emission;   // cos e; 0 for a surface; 2: see unmet_rays()
 };
 
 LightCone whole_sphere_cone() { return LightCone(vec3(0, 0, 1), -1.0, 0.0); }
+
+// Of a light whose rays have one direction each where they start: sample_towards never finds one of them. Forward rays alone bring
+// such light, and no point chooses it.
+LightCone unmet_rays() { return LightCone(vec3(0, 0, 1), 1.0, 2.0); }
 
 #include "generated/light_classes.glsl"
 

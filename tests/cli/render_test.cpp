@@ -4,6 +4,7 @@
 #include "host/image/exr.h"
 #include "tests/cli/program.h"
 #include "tests/support/class_file.h"
+#include "tests/support/source_path.h"
 
 using namespace etendue;
 
@@ -188,6 +189,33 @@ TEST_CASE("inspect tells flux, peak and opening of a photometric file, and what 
     for (const char* said :
          {"lamp.ies: the horizontal angles end at 270°", "12.5664 lm, its lamps have 500 lm"})
         CHECK(inspect.err.find(said) != std::string::npos);
+}
+
+TEST_CASE("inspect tells what a ray file holds; backward rays alone say that they leave it out") {
+    Executable program;
+    write_text(program.folder / "led.ray",
+               read_text(source_path("tests/host/rays/own_odd_unnormalised.tm25ray")));
+    write_text(program.folder / "s.gltf",
+               R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "nodes": [
+{"name": "LED", "extensions": {"ETD_optics": {"light": {"class": "rays", "file": "led.ray"}}}}, {"translation": [0, 0, 1],
+"rotation": [1, 0, 0, 0], "extensions": {"ETD_optics": {"receiver": {"class": "illuminance", "size": [1, 1], "resolution": [2, 2]}}}}],
+"scenes": [{"nodes": [0, 1]}], "scene": 0})");
+    const Run inspect = program.run({"inspect", "s.gltf"});
+    CAPTURE(inspect.err);
+    CHECK(inspect.code == 0);
+    for (const char* said :
+         {"led.ray: TM-25, 1 rays, 1 W, from (0, 0, 0) to (0, 0, 0) mm",
+          "algorithm  bidirectional, fused schedule: forward rays alone bring the light of LED"})
+        CHECK_MESSAGE(inspect.out.find(said) != std::string::npos, inspect.out);
+    for (const char* said :
+         {"led.ray: 1 of 1 directions were no unit vectors", "led.ray: tells watts and no wavelengths"})
+        CHECK(inspect.err.find(said) != std::string::npos);
+    const auto render = [&](const std::string& algorithm) {
+        return program.run({"render", "s.gltf", "-o", "out.exr", "--passes", "2", "--algorithm", algorithm});
+    };
+    const std::string left_out = "backward rays find no light of LED: it is left out";
+    CHECK(render("backward").err.find(left_out) != std::string::npos);
+    CHECK(render("auto").err.find(left_out) == std::string::npos);
 }
 
 TEST_CASE("inspect, classes and devices tell what there is") {

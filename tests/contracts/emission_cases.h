@@ -7,6 +7,7 @@
 
 #include "host/image/exr.h"
 #include "host/photometry/intensity_distribution.h"
+#include "host/photometry/ray_file.h"
 #include "tests/support/emission_probe.h"
 #include "tests/support/source_path.h"
 
@@ -152,6 +153,25 @@ inline std::string wild_lamp(IntensityDistribution::Type type, const std::string
     return file.string();
 }
 
+// Rays of which some are dark, and some carry as much as many others. In lumens.
+inline std::string uneven_rays() {
+    static const TemporaryFolder folder;
+    RayFile file;
+    file.unit = RayFile::Unit::lumen;
+    for (int i = 0; i < 61; ++i) {
+        const float turn = 2.4f * float(i), far = std::sqrt(float(i) / 60);
+        const glm::vec3 position(200 * far * std::cos(turn), 200 * far * std::sin(turn), float(i));
+        const glm::vec3 direction = glm::normalize(glm::vec3(std::sin(turn), std::cos(2 * turn), -1.5f));
+        file.rays.push_back({position, direction,
+                             i % 7 == 3 ? 0.0f
+                             : i == 20  ? 40.0f
+                                        : float(i % 5) + 0.25f});
+    }
+    const auto path = folder / "uneven.tm25ray";
+    write_tm25(path, file);
+    return path.string();
+}
+
 inline std::vector<EmissionCase> emission_cases() {
     const auto down = [](double z) {  // +z becomes -z
         return glm::dmat4({1, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, -1, 0}, {0.1, 0, z, 1});
@@ -206,6 +226,42 @@ inline std::vector<EmissionCase> emission_cases() {
         {"ies", "axial",
          light_scene("ies", {{"file", source_path("tests/host/photometry/own_lambert_1986_commas_feet.ies")},
                              {"point", true}})},
+        {"rays",
+         "uneven",
+         light_scene("rays", {{"file", uneven_rays()}, {"flux", 50}, {"color", {1, 0.5, 0.25}}}),
+         1e-5,
+         {{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.7f},
+         0.22f},
+        {"rays",
+         "wavelengths",
+         light_scene("rays", {{"file", source_path("tests/host/rays/own_3rays_wavelength.tm25ray")}}),
+         1e-5,
+         {{0, 0, 0.6f}, {0, 0, -1}, 0.3f},
+         0.0024f},
+        {"collimated",
+         "parallel",
+         light_scene("collimated", {{"radius", 0.3}, {"power", 7}}),
+         1e-5,
+         {{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f},
+         0.301f},
+        {"collimated",
+         "diverging",
+         light_scene("collimated", {{"radius", 0.3}, {"divergence", 0.4}, {"color", {1, 0.5, 0.25}}}),
+         1e-5,
+         {{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f},
+         0.301f},
+        {"collimated",
+         "narrow",
+         light_scene("collimated", {{"radius", 0.3}, {"divergence", 0.001}}),
+         1e-5,
+         {{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f},
+         0.301f},
+        {"collimated",
+         "wide",
+         light_scene("collimated", {{"radius", 0.02}, {"divergence", 1.3}}),
+         1e-5,
+         {{0.1f, 0.05f, -0.5f}, {0, 0, 1}, 0.4f},
+         0.021f},
         {"directional", "", light_scene("directional", {{"intensity", 5}})},
         {"constant", "", environment_scene("constant", {{"radiance", {1, 2, 3}}})},
         {"image", "", environment_scene("image", {{"file", environment_file()}, {"rotation", 1}}), 1e-4},

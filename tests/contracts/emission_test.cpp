@@ -16,6 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double false_alarm = 1e-4;
 
+double square(double x) { return x * x; }
 double luminance(glm::vec3 c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
 
 struct Probed {
@@ -24,8 +25,12 @@ struct Probed {
     std::vector<ProbedRay> rays;
     bool has_surface() const { return c.class_name == "area"; }
     bool has_position() const {
-        return c.class_name == "point" || c.class_name == "spot" || c.class_name == "ies";
+        return c.class_name == "point" || c.class_name == "spot" || c.class_name == "ies" ||
+               c.class_name == "rays" || c.class_name == "collimated";
     }
+    // Forward rays alone bring its light.
+    bool is_unmet() const { return c.class_name == "rays" || c.label == "parallel"; }
+    json parameters() const { return c.scene.lights[0].object.parameters; }
 };
 
 std::vector<Probed>& probed() {
@@ -90,11 +95,15 @@ double crossing_p_value(Probed& p) {
     return chi2_survival(statistic, degrees);
 }
 
-// Lights at a point: cells in 1 - cos of the angle to -z and in azimuth, up to where the cone of light ends.
+// Lights at a point, or of whose points each sends alike: cells in 1 - cos of the angle to -z and in azimuth,
+// up to where the cone of light ends.
 double direction_p_value(Probed& p) {
     constexpr uint32_t rings = 32, sectors = 16, fine = 8;  // quadrature points along each side of a cell
-    const json parameters = p.c.scene.lights[0].object.parameters;
-    const double outer = parameters.value("outer_cone_angle", pi), end = 2 * std::pow(std::sin(outer / 2), 2);
+    const json parameters = p.parameters();
+    const bool is_disk = p.c.class_name == "collimated";
+    const double outer =
+                     is_disk ? parameters.value("divergence", 0.0) : parameters.value("outer_cone_angle", pi),
+                 end = 2 * std::pow(std::sin(outer / 2), 2);
     std::vector<double> observed(rings * sectors), expected(rings * sectors);
     for (const ProbedRay& r : p.rays) {
         const glm::dvec3 d(r.direction);
@@ -115,7 +124,9 @@ double direction_p_value(Probed& p) {
     const std::vector<float> densities = p.probe->densities(directions);
     double total = 0;
     for (size_t i = 0; i < densities.size(); ++i) {
-        const double part = densities[i] * 2 * pi * end / double(densities.size());
+        double part = densities[i] * 2 * pi * end / double(densities.size());
+        if (is_disk)
+            part *= pi * square(parameters["radius"]) * -double(directions[i].z);  // from that per étendue
         expected[i / (fine * fine)] += part * double(p.rays.size());
         total += part;
     }
@@ -123,17 +134,41 @@ double direction_p_value(Probed& p) {
     return chi_squared_test(observed, expected).p_value;
 }
 
-// Parallel rays: evenly over a disk, whose area is 1 / pdf.
+// Evenly over a disk: of parallel rays one across them whose area is 1 / pdf, else the light's.
 double disk_p_value(Probed& p) {
+    const double area =
+        p.c.class_name == "collimated" ? pi * square(p.parameters()["radius"]) : 1 / double(p.rays[0].pdf);
     std::vector<double> observed(16 * 32), expected(16 * 32, double(p.rays.size()) / (16 * 32));
     for (const ProbedRay& r : p.rays) {
-        const glm::dvec3 across =
-            glm::dvec3(r.origin) - glm::dvec3(r.direction) * double(glm::dot(r.origin, r.direction));
-        const double ring = glm::dot(across, across) * pi * double(r.pdf);
+        const glm::dvec3 o(r.origin),
+            axis = p.c.class_name == "collimated" ? glm::dvec3(0, 0, -1) : glm::dvec3(r.direction);
+        const glm::dvec3 across = o - axis * glm::dot(o, axis);
+        const double ring = glm::dot(across, across) * pi / area;
         REQUIRE(ring < 1.0001);
         const double turn = std::atan2(across.y, across.x) / (2 * pi) + 0.5;
         observed[std::min(uint32_t(ring * 16), 15u) * 32 + std::min(uint32_t(turn * 32), 31u)] += 1;
     }
+    return chi_squared_test(observed, expected).p_value;
+}
+
+// Rays of a file: each as often as its part of the flux, from where it starts, the way that it goes.
+double ray_p_value(Probed& p) {
+    const RayFile file = read_ray_file(p.parameters()["file"].get<std::string>());
+    std::vector<double> observed(file.rays.size()), expected(file.rays.size());
+    for (size_t i = 0; i < file.rays.size(); ++i)
+        expected[i] = file.rays[i].flux / file.flux() * double(p.rays.size());
+    for (const ProbedRay& r : p.rays) {
+        const glm::vec3 start = 1000.0f * (r.origin - glm::vec3(0, 0, 0.5f));
+        size_t nearest = 0;
+        for (size_t i = 1; i < file.rays.size(); ++i)
+            if (glm::distance(file.rays[i].position, start) <
+                glm::distance(file.rays[nearest].position, start))
+                nearest = i;
+        REQUIRE(glm::distance(file.rays[nearest].position, start) < 1e-3f);
+        REQUIRE(glm::distance(file.rays[nearest].direction, r.direction) < 1e-6f);
+        observed[nearest] += 1;
+    }
+    for (size_t i = 0; i < file.rays.size(); ++i) CHECK((observed[i] > 0) == (expected[i] > 0));
     return chi_squared_test(observed, expected).p_value;
 }
 
@@ -211,7 +246,10 @@ TEST_CASE("emission: a ray has the same density and radiance where it starts, is
         const double tolerance = p.c.label == "narrow" ? 1e-3 : steps ? 1e-3 : 1e-4;
         CHECK(across <= 2e-3 * double(p.rays.size()));
         CHECK(missed <= 1e-3 * double(p.rays.size()));
-        CHECK(sampled > 0.2 * double(p.rays.size()));
+        if (p.is_unmet())
+            CHECK(sampled == 0);
+        else
+            CHECK(sampled > 0.2 * double(p.rays.size()));
         CHECK(worst_pdf < tolerance);
         CHECK(worst_radiance < tolerance);
         CHECK(worst_sampled < (p.has_surface() ? 0.02 : tolerance));
@@ -223,9 +261,12 @@ TEST_CASE("emission: positions and directions are distributed as stated") {
     const double level = sidak_level(false_alarm, probed().size());
     for (Probed& p : probed()) {
         INFO(p.c.class_name, " ", p.c.label);
-        if (p.has_position())
+        if (p.c.class_name == "rays")
+            CHECK(ray_p_value(p) > level);
+        else if (p.has_position() && !p.is_unmet())
             CHECK(direction_p_value(p) > level);
-        else if (p.rays[0].is_delta)
+        if (p.has_position() && p.c.class_name != "collimated") continue;
+        if (p.rays[0].is_delta)
             CHECK(disk_p_value(p) > level);
         else
             CHECK(crossing_p_value(p) > level);
@@ -264,6 +305,11 @@ TEST_CASE("emission: the flux through a disk is the illuminance that its points 
         const double error = std::hypot(arriving.standard_error(), area * sampled.standard_error());
         CAPTURE(arriving.mean / area);
         CAPTURE(sampled.mean);
+        CHECK(arriving.mean > 0);
+        if (p.is_unmet()) {
+            CHECK(sampled.mean == 0);
+            continue;
+        }
         CHECK(error < 0.02 * arriving.mean);
         CHECK(z_test(arriving.mean, area * sampled.mean, error, 1e-4 * arriving.mean) > level);
     }

@@ -90,6 +90,23 @@ inline std::vector<LightConfiguration> light_configurations(const std::string& n
                            {0.7f, 0.2f, -3}});
         return all;
     }
+    if (name == "rays")
+        return {{"",
+                 {{"file", source_path("tests/host/rays/own_3rays_wavelength.tm25ray")}},
+                 tilted_node(),
+                 {},
+                 {0.7f, 0.2f, -3}}};
+    // From points of which some see all of what lights them, some a part.
+    if (name == "collimated")
+        return {
+            {"parallel", {{"radius", 0.5}}, tilted_node(), {}, {1.6f, 1.2f, -3}},
+            {"narrow",
+             {{"radius", 0.5}, {"divergence", 0.01}, {"power", 7}},
+             tilted_node(),
+             {},
+             {1.6f, 1.2f, -3}},
+            {"at its edge", {{"radius", 0.5}, {"divergence", 0.2}}, tilted_node(), {}, {1.9f, 1.5f, -3.1f}},
+            {"wide", {{"radius", 0.01}, {"divergence", 1.4}}, tilted_node(), {}, {1.9f, 1.5f, -3.1f}}};
     return {};
 }
 

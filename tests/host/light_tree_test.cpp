@@ -98,6 +98,16 @@ void check_tree(const std::vector<LightBounds>& lights) {
 
 }  // namespace
 
+TEST_CASE("light tree: no point chooses a light that forward rays alone bring") {
+    LightBounds beam = point_light({1, 2, 3}, 100);
+    beam.cos_normals = 1, beam.cos_emission = 2;  // unmet_rays() of shaders/interfaces/light_source.glsl
+    CHECK(is_unmet(beam));
+    CHECK(!is_unmet(point_light({1, 2, 3})));
+    CHECK(peak_intensity(beam) == 0);
+    const std::vector<LightBounds> lights = {beam, point_light({0, 0, 0})};
+    CHECK(build_light_tree(lights).nodes[0].intensity[0] == 0);
+}
+
 TEST_CASE("light tree: every node encloses the positions, normals and emission of its lights") {
     check_tree(random_lights(17));
     check_tree(random_lights(5000));

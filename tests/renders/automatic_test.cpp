@@ -57,6 +57,18 @@ TEST_CASE("automatic: a point light in fog is brought by forward rays") {
     CHECK(choice.pilot_seconds > 0);
 }
 
+TEST_CASE("automatic: light that forward rays alone bring is traced both ways, without a pilot") {
+    for (const double divergence : {0.0, 0.1}) {
+        SceneBuilder scene = lamp_over({{"class", "lambertian"}, {"reflectance", 0.5}});
+        scene.placed("light", {{"class", "collimated"}, {"divergence", divergence}}, facing_down(0, 2, 0));
+        scene.document["nodes"].back()["name"] = "laser";
+        const AlgorithmChoice choice = choice_for(scene.import());
+        CHECK(choice.algorithm == (divergence > 0 ? Algorithm::backward : Algorithm::bidirectional));
+        if (divergence == 0) CHECK(choice.reason == "forward rays alone bring the light of laser");
+        CHECK(choice.pilot_seconds == 0);
+    }
+}
+
 TEST_CASE("automatic: a lamp over a cloud needs no pilot") {
     SceneBuilder scene;
     scene.medium("fog", {{"class", "homogeneous"}, {"scattering", 0.3}});

@@ -117,6 +117,7 @@ EmissionProbe::EmissionProbe(const SceneDescription& description) {
     SceneOptions options;
     options.shaders = source_path("shaders");
     options.cache_folder = cache_.path;
+    options.color = ColorMode::rgb;
     scene_ = compile_scene(test_device(), description, options);
     scene_.sources.generated["probe_emission.comp"] = text;
 }

@@ -78,12 +78,23 @@ LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& para
         texels.insert(texels.end(), sky.map.texels.begin(), sky.map.texels.end());
         return sky.ref;
     };
+    std::vector<uint32_t> ray_words(1);
+    std::vector<SpectrumRef> ray_colors(1);
+    resolver.rays = [&](const std::filesystem::path& file, const ClassInfo&, const std::vector<std::byte>&,
+                        const std::string&) {
+        RaySet set = append_ray_set(ray_words, read_ray_file(file));
+        set.ref.first_color = 1;
+        for (const SpectralValue& color : set.colors) ray_colors.push_back({color.rgb, 0});
+        return set.ref;
+    };
     RecordBuffer records;
     records.add(*info, fill_record(*info, {class_name, parameters, "/light"}, placement, resolver));
     records.layout();
     records_ = create_buffer(test_device(), records.bytes(), "light records");
     texels_ = create_buffer(test_device(), texels, "environment texels");
     photometric_ = create_buffer(test_device(), photometric, "photometric values");
+    ray_words_ = create_buffer(test_device(), ray_words, "ray words");
+    ray_colors_ = create_buffer(test_device(), ray_colors, "ray colors");
     lights_ = create_buffer(test_device(), std::vector<uint32_t>{records.ref(*info, 0)}, "lights");
     sources_ = test_sources();
     sources_.generated["generated/light_classes.glsl"] =
@@ -100,6 +111,8 @@ Kernel LightProbe::kernel(const std::string& name, const std::string& text, Buff
     buffers["LightRecords"] = &records_;
     buffers["EnvironmentTexels"] = &texels_;
     buffers["PhotometricValues"] = &photometric_;
+    buffers["RayWords"] = &ray_words_;
+    buffers["RayColors"] = &ray_colors_;
     buffers["Lights"] = &lights_;
     return Kernel(test_device(), compile_shader(sources, name, options), buffers);
 }

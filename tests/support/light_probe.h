@@ -42,7 +42,7 @@ class LightProbe {
     Kernel kernel(const std::string& name, const std::string& file, BufferTable buffers);
     ShaderSources sources_;
     Features features_;
-    Buffer records_, texels_, photometric_, lights_;
+    Buffer records_, texels_, photometric_, ray_words_, ray_colors_, lights_;
 };
 
 }  // namespace etendue

@@ -180,7 +180,27 @@ def washer():
     return ("\n".join(lines) + "\n").encode()
 
 
-FILES = {"sky.hdr": sky, "paint.json": paint, "gold.pbsdf": rough_gold, "washer.ies": washer}
+def led():
+    """A ray file of Zemax, in lumens: a square of 1 mm that shines along +z, narrower than Lambert's law."""
+    def halton(i, base):
+        x, part = 0.0, 1.0
+        while i:
+            part /= base
+            x += part * (i % base)
+            i //= base
+        return x
+
+    count, body = 1500, b""
+    for i in range(1, count + 1):
+        x, y, u, v = (halton(i, base) for base in (2, 3, 5, 7))
+        z = (1 - u) ** 0.25  # cos³ of intensity
+        side, turn = math.sqrt(1 - z * z), 2 * math.pi * v
+        body += struct.pack("<7f", x - 0.5, y - 0.5, 0, side * math.cos(turn), side * math.sin(turn), z, 1 / count)
+    head = struct.pack("<iI100s3f4fI9f4f4i", 1010, count, b"computed", 1, 1, 0.55, 0, 0, 0, 0, 4, *[0] * 6, 1, 1, 1, *[0] * 4, 0, 1, 0, 0)
+    return head + body
+
+
+FILES = {"sky.hdr": sky, "paint.json": paint, "gold.pbsdf": rough_gold, "washer.ies": washer, "led.dat": led}
 
 
 def write_showcases(folder):
