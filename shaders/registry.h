@@ -22,7 +22,7 @@
     X(5, ConstantEnvironment, constant) \
     X(6, ImageEnvironment, image)       \
     X(7, IesLight, ies)                 \
-    X(8, SkyEnvironment, sky)                \
+    X(8, SkyEnvironment, sky)           \
     X(9, RaysLight, rays)               \
     X(10, CollimatedLight, collimated)
 
