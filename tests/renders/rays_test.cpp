@@ -10,6 +10,7 @@
 #include "tests/renders/agreement_scenes.h"
 #include "tests/renders/algorithm_comparison.h"
 #include "tests/support/source_path.h"
+#include "tests/support/statistics.h"
 
 using namespace etendue;
 using nlohmann::json;
