@@ -7,10 +7,10 @@
 //
 // Example:
 //     {"nodes": [{"name": "laser", "translation": [-0.9, 1.5, 0.9], "rotation": [-0.42, -0.33, -0.17, 0.83], "extensions": {"ETD_optics": {
-//         "light": {"class": "collimated", "radius": 0.15, "divergence": 0.01, "power": 0.4, "color": [1, 0.3, 0.1]}}}}]}
+//         "light": {"class": "collimated", "radius": 0.22, "divergence": 0.06, "power": 0.6, "color": [1, 0.3, 0.1]}}}}]}
 struct CollimatedLight {
     Placement placement;
-    SpectrumRef color;  //: 1 in [0, inf). Multiplies the power; of a spectrum in W/nm the power is 1 or a factor.
+    SpectrumRef color;  //: 1 in [0, inf). Multiplies the power. A spectrum is in W/nm, and the power is how many times that.
     float radius;       //: 0.001 in (0, inf) m. Of the disk.
     float divergence;   //: 0 in [0, 1.5] rad. Half the angle of the cone; less than a microradian counts as none.
     float power;        //: 1 in [0, inf) lm. Luminous flux.
