@@ -14,7 +14,7 @@ constexpr float most_flux = 1e15f;  // W or lm, of a ray
 
 double RayFile::flux() const {
     double sum = 0;
-    for (const Ray& ray : rays) sum += ray.flux;
+    for (const SourceRay& ray : rays) sum += ray.flux;
     return sum;
 }
 

@@ -10,12 +10,12 @@
 
 namespace etendue {
 
-struct Ray {
+struct SourceRay {
     glm::vec3 position;   // mm
     glm::vec3 direction;  // unit, the way light travels
     float flux;           // W or lm, as RayFile says
 
-    bool operator==(const Ray&) const = default;
+    bool operator==(const SourceRay&) const = default;
 };
 
 // Linear between its points, dark beyond them; of any scale.
@@ -35,8 +35,8 @@ struct RayPolarization {
 // What such a file holds. Rays have spectra by `wavelengths`, or by `spectra`, or none.
 struct RayFile {
     enum class Unit { watt, lumen };
-    Unit unit = Unit::watt;             // of Ray::flux
-    std::vector<Ray> rays;              // at least one, not all of them dark
+    Unit unit = Unit::watt;             // of SourceRay::flux
+    std::vector<SourceRay> rays;              // at least one, not all of them dark
     std::vector<float> lumens;          // of each ray, beside its watts; empty = not told
     std::vector<float> wavelengths;     // nm, of each ray
     std::vector<RaySpectrum> spectra;   // tables

@@ -223,7 +223,7 @@ RaySet append_ray_set(std::vector<uint32_t>& words, const RayFile& file) {
     words.insert(words.end(), color_of.begin(), color_of.end());
     glm::vec3 lo(std::numeric_limits<float>::max()), hi(-lo);
     words.reserve(words.size() + 6 * n);
-    for (const Ray& ray : file.rays) {
+    for (const SourceRay& ray : file.rays) {
         const glm::vec3 p = ray.position * 0.001f;
         lo = glm::min(lo, p), hi = glm::max(hi, p);
         for (int k = 0; k < 3; ++k) words.push_back(std::bit_cast<uint32_t>(p[k]));

@@ -47,7 +47,7 @@ RayFile read_speos(RayReader& in) {
     if (columns == 13) file.warnings.emplace_back("the polarization of its rays is not read");
     rays.finish();
     const double scale = watts / file.flux();
-    for (Ray& ray : file.rays) ray.flux = float(ray.flux * scale);
+    for (SourceRay& ray : file.rays) ray.flux = float(ray.flux * scale);
     file.stated_watts = watts;
     return file;
 }

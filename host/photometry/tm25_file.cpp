@@ -261,7 +261,7 @@ void write_tm25(const std::filesystem::path& path, const RayFile& file, const st
     head.resize(header_bytes + padded(head.size() - header_bytes));
     std::vector<float> body;
     for (size_t i = 0; i < file.rays.size(); ++i) {
-        const Ray& r = file.rays[i];
+        const SourceRay& r = file.rays[i];
         for (int k = 0; k < 3; ++k) body.push_back(r.position[k]);
         for (int k = 0; k < 3; ++k) body.push_back(r.direction[k]);
         if (in_watts) body.push_back(r.flux);

@@ -79,20 +79,16 @@ bool deserves_pilot(double backward_paths) {
 }
 
 AlgorithmChoice choose_both_ways(const std::vector<FilmView>& views, std::string reason) {
-    AlgorithmChoice choice;
-    choice.algorithm = Algorithm::bidirectional;
-    choice.forward_paths = std::max(1.0, least_forward_paths / double(pixel_count(views)));
-    choice.reason = std::move(reason);
-    return choice;
+    return {Algorithm::bidirectional, std::max(1.0, least_forward_paths / double(pixel_count(views))),
+            std::move(reason)};
 }
 
 std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene,
                                                     const std::vector<FilmView>& views) {
-    AlgorithmChoice choice;
-    if (!(scene.power > 0)) {
-        choice.reason = "no light";
-        return choice;
-    }
+    const auto backward = [](std::string reason) {
+        return AlgorithmChoice{Algorithm::backward, 1, std::move(reason)};
+    };
+    if (!(scene.power > 0)) return backward("no light");
     if (!scene.unmet_lights.empty())
         return choose_both_ways(
             views, fmt::format("forward rays alone bring the light of {}", scene.unmet_lights[0]));
@@ -101,14 +97,13 @@ std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene
             if (receiver.ref == view.receiver && receiver.info->is_far)
                 return choose_both_ways(views, "from far away backward rays seldom hit a lamp");
     const bool narrow = find_narrow_materials(device, scene);
-    choice.reason = "no surface is smooth or nearly so";
-    if (!narrow && !scene.features.scattering) return choice;
+    const char* const matte = "no surface is smooth or nearly so";
+    if (!narrow && !scene.features.scattering) return backward(matte);
     const CompactLights lights = find_compact_lights(device, scene);
-    if (!narrow && !lights.points) return choice;
+    if (!narrow && !lights.points) return backward(matte);
     if (lights.any && views.size() > 1) return choose_both_ways(views, "backward rays alone may miss light");
     if (lights.any) return {};
-    choice.reason = "no light is compact";
-    return choice;
+    return backward("no light is compact");
 }
 
 std::string missed_light(const Scene& scene, Algorithm algorithm) {

@@ -99,7 +99,7 @@ inline void check_lamp(const std::filesystem::path& file) {
 
 inline void check_rays(const std::filesystem::path& file) {
     const RayFile rays = read_ray_file(file);
-    for (const Ray& ray : rays.rays) {
+    for (const SourceRay& ray : rays.rays) {
         require_finite({&ray.position.x, 3}, "rays start somewhere");
         if (!(std::abs(glm::length(ray.direction) - 1) < 1e-5f))
             throw std::logic_error("directions are unit vectors");

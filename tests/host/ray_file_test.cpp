@@ -63,7 +63,7 @@ bool mentions(const std::vector<std::string>& warnings, const std::string& word)
 }
 
 // The three rays of all these files, in watts.
-std::vector<Ray> three_rays() {
+std::vector<SourceRay> three_rays() {
     const float third = float(1 / std::sqrt(3.0));
     return {{{0, 0, 0}, {0, 0, 1}, 0.5f},
             {{1, -2, 0.5f}, {0.6f, 0, 0.8f}, 0.25f},
@@ -71,7 +71,7 @@ std::vector<Ray> three_rays() {
 }
 
 void check_three_rays(const RayFile& file, float flux_scale, double tolerance) {
-    const std::vector<Ray> expected = three_rays();
+    const std::vector<SourceRay> expected = three_rays();
     REQUIRE(file.rays.size() == expected.size());
     for (size_t i = 0; i < expected.size(); ++i) {
         CAPTURE(i);

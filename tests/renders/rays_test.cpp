@@ -67,7 +67,7 @@ TEST_CASE("rays: a Lambert source of a ray file lights a meter as its rays say, 
     const double size = 0.1, distance = 0.05, flux = 1000;
     const RayFile file = read_ray_file(file_of("own_lambert_1mm_4k.tm25ray"));
     double arriving = 0;
-    for (const Ray& ray : file.rays) {
+    for (const SourceRay& ray : file.rays) {
         const glm::dvec3 p(ray.position), d(ray.direction);
         const glm::dvec3 hit = p + d * ((1000 * distance - p.z) / d.z);
         if (d.z > 0 && std::max(std::abs(hit.x), std::abs(hit.y)) < 500 * size) arriving += ray.flux;
