@@ -36,7 +36,7 @@ struct RayPolarization {
 struct RayFile {
     enum class Unit { watt, lumen };
     Unit unit = Unit::watt;             // of SourceRay::flux
-    std::vector<SourceRay> rays;              // at least one, not all of them dark
+    std::vector<SourceRay> rays;        // at least one, not all of them dark
     std::vector<float> lumens;          // of each ray, beside its watts; empty = not told
     std::vector<float> wavelengths;     // nm, of each ray
     std::vector<RaySpectrum> spectra;   // tables
