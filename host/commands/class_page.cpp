@@ -74,26 +74,27 @@ std::string prose(const std::string& comment) {
 }
 
 std::string type_name(const Parameter& p) {
-    static const std::map<std::string, std::string> names = {{"float", "number"},
-                                                             {"uint", "whole number"},
-                                                             {"int", "whole number"},
-                                                             {"vec2", "2 numbers"},
-                                                             {"vec3", "3 numbers"},
-                                                             {"vec4", "4 numbers"},
-                                                             {"SpectrumRef", "spectral value"},
-                                                             {"TextureRef", "texture"},
-                                                             {"MediumRef", "medium"},
-                                                             {"PhaseRef", "phase function"},
-                                                             {"GridRef", "file"},
-                                                             {"EnvironmentMapRef", "file"},
-                                                             {"MeasuredRef", "file"},
-                                                             {"MuellerMatrix", "16 numbers"},
-                                                             {"MuellerTableRef", "file"},
-                                                             {"PhotometryRef", "file"},
-                                                             {"RayFileRef", "file"},
-                                                             {"WorldPoint", "point"},
-                                                             {"Direction", "direction"},
-                                                             {"SunDirection", "direction, or place and time"}};
+    static const std::map<std::string, std::string> names = {
+        {"float", "number"},
+        {"uint", "whole number"},
+        {"int", "whole number"},
+        {"vec2", "2 numbers"},
+        {"vec3", "3 numbers"},
+        {"vec4", "4 numbers"},
+        {"SpectrumRef", "spectral value"},
+        {"TextureRef", "texture"},
+        {"MediumRef", "medium"},
+        {"PhaseRef", "phase function"},
+        {"GridRef", "file"},
+        {"EnvironmentMapRef", "file"},
+        {"MeasuredRef", "file"},
+        {"MuellerMatrix", "16 numbers"},
+        {"MuellerTableRef", "file"},
+        {"PhotometryRef", "file"},
+        {"RayFileRef", "file"},
+        {"WorldPoint", "point"},
+        {"Direction", "direction"},
+        {"SunDirection", "direction, or place and time"}};
     if (p.default_value.is_boolean()) return "true or false";  // a bool of GLSL is a uint in a buffer
     const auto found = names.find(p.member.type);
     return found == names.end() ? p.member.type : found->second;

@@ -69,8 +69,7 @@ int measure_command(const MeasureOptions& options) {
     settings.spectral_bins = options.spectral_bins;
     MeasurementRun run(*opened.device, scene, choose_meters(scene, options), settings);
     Measurement& measurement = run.measurement();
-    if (const std::string missed = missed_light(scene, measurement.choice.algorithm);
-        !missed.empty())
+    if (const std::string missed = missed_light(scene, measurement.choice.algorithm); !missed.empty())
         show_note(progress, "warning: " + missed);
     const nlohmann::json identity = measurement_identity(source_hashes(opened, options), options, scene, run);
     std::vector<std::string> devices = {device_text(*opened.device)};

@@ -38,7 +38,8 @@ void keep(const Measurement& measurement, Checkpoint& checkpoint) {
                           {"is_far", readings.meter.is_far},
                           {"has_extent", readings.meter.has_extent},
                           {"spectral_bins", readings.spectral_bins},
-                          {"forward_paths", readings.forward_paths}});
+                          {"forward_paths", readings.forward_paths},
+                          {"probing_paths", readings.probing_paths}});
         add_array(checkpoint, array_name(m, "sums"), readings.sums);
         add_array(checkpoint, array_name(m, "places"), readings.meter.places);
         add_array(checkpoint, array_name(m, "spectra"), readings.spectra);
@@ -113,6 +114,7 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
             array_of<ExactSum>(checkpoint, path, array_name(m, "spectra of rows"),
                                spectral_sums(meter.rows * replicates, readings.spectral_bins, 1));
         readings.forward_paths = json.at("forward_paths");
+        readings.probing_paths = json.at("probing_paths");
         readings.passes = checkpoint.passes.count() / replicates;
     }
     return measurement;
@@ -128,6 +130,7 @@ void add(Measurement& all, const Measurement& part) {
         merge(std::span(readings.spectra), std::span<const ExactSum>(part.meters[m].spectra));
         merge(std::span(readings.row_spectra), std::span<const ExactSum>(part.meters[m].row_spectra));
         readings.forward_paths += part.meters[m].forward_paths;
+        readings.probing_paths = std::max(readings.probing_paths, part.meters[m].probing_paths);
         readings.passes = all.passes.count() / replicates;
     }
 }

@@ -259,8 +259,9 @@ bool is_dark(const Readings& readings) {
 }
 
 std::optional<double> missed_flux(const Readings& readings, double power) {
-    if (readings.forward_paths == 0 || !is_dark(readings)) return {};
-    return 3 * power / double(readings.forward_paths);
+    const uint64_t paths = readings.forward_paths + readings.probing_paths;
+    if (paths == 0 || !is_dark(readings)) return {};
+    return 3 * power / double(paths);
 }
 
 std::string darkness_text(const Readings& readings, double power) {

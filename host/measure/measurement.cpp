@@ -144,7 +144,7 @@ std::vector<std::string> MeasurementRun::probe_dark_meters() {
             if (std::any_of(image.values.begin(), image.values.end(), is_lit))
                 reached.push_back((*readings)->meter.name);
             else
-                (*readings)->forward_paths = renderer.counters().forward_paths;
+                (*readings)->probing_paths = renderer.counters().forward_paths;
         }
     }
     return reached;

@@ -48,7 +48,8 @@ struct Readings {
     std::vector<ExactSum> spectra;      // pixel after pixel, of all replicates together
     std::vector<ExactSum> row_spectra;  // row after row, replicate after replicate: its pixels' sum
     uint64_t passes = 0;                // of each replicate
-    uint64_t forward_paths = 0;         // that have looked for it, in its passes or to probe whether any arrives
+    uint64_t forward_paths = 0;         // that could have brought light in its passes
+    uint64_t probing_paths = 0;  // … traced for no other end than to see whether any arrives, always the same
 };
 
 using PixelMeans = std::vector<glm::dvec3>;  // linear Rec.709; (1, 1, 1) is one of the meter's units

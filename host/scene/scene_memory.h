@@ -68,7 +68,7 @@ struct SceneMemory {
 
     std::vector<TextureUse> texture_uses;  // that the packed textures are of
     uint32_t texture_formats = 0;
-    struct LitTriangles {                       // what drop_dark_triangles came to
+    struct LitTriangles {  // what drop_dark_triangles came to
         uint64_t key = 0;
         std::vector<TextureUse> textures;
         std::vector<uint32_t> primitives;

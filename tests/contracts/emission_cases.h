@@ -265,6 +265,10 @@ inline std::vector<EmissionCase> emission_cases() {
         {"directional", "", light_scene("directional", {{"intensity", 5}})},
         {"constant", "", environment_scene("constant", {{"radiance", {1, 2, 3}}})},
         {"image", "", environment_scene("image", {{"file", environment_file()}, {"rotation", 1}}), 1e-4},
+        // Of a map's texels; the sun is that of contracts/sky, since the cells here are far larger.
+        {"sky", "of the west",
+         environment_scene("sky", {{"type", 8}, {"diffuse", 1}, {"ground", 0.4}, {"sun", {-1, 0.4, 0.3}}}),
+         2e-3},
     };
 }
 

@@ -194,7 +194,8 @@ TEST_CASE("a room lit by a ray file and a beam over a glass ball: forward and bi
     plan.algorithm = Algorithm::bidirectional, plan.passes = 64, plan.first_seed = 101;
     check_agreement("bidirectional", render_estimates(scene, plan), forward, 0.002, 0.01);
 
-    const AlgorithmChoice choice = choose_without_pilot(test_device(), scene).value();
+    const FilmView view{scene.receivers.front().ref, plan.width, plan.height};
+    const AlgorithmChoice choice = choose_without_pilot(test_device(), scene, {view}).value();
     CHECK(choice.algorithm == Algorithm::bidirectional);
     CHECK(scene.unmet_lights.size() == 2);
     CHECK(missed_light(scene, Algorithm::backward).find("it is left out") != std::string::npos);
