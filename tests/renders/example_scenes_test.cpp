@@ -7,6 +7,8 @@
 #include <tuple>
 
 #include "host/gltf/gltf.h"
+#include "host/measure/figures.h"
+#include "host/measure/measurement.h"
 #include "tests/support/render_probe.h"
 #include "tests/support/source_path.h"
 
@@ -26,6 +28,22 @@ void check_uniform(const std::string& name, uint32_t passes, double value, doubl
     const WindowMean mean = window_mean(render_example(name, 96, 64, passes));
     MESSAGE(name, ": ", mean.mean, " +- ", mean.standard_error);
     CHECK(mean.mean == doctest::Approx(value).epsilon(tolerance));
+}
+
+// What a meter of the example reads, by the name of a figure.
+Interval measure_example(const std::string& name, const std::string& meter, const std::string& figure,
+                         uint64_t passes) {
+    Scene scene = compile_test_scene(import_gltf(example(name)));
+    std::vector<const Receiver*> receivers;
+    for (const Receiver& receiver : scene.receivers)
+        if (receiver.name == meter) receivers.push_back(&receiver);
+    REQUIRE(receivers.size() == 1);
+    MeasurementRun run(test_device(), scene, receivers, {});
+    REQUIRE(run.add({0, passes}, [] { return false; }));
+    for (const Figure& found : figures_of(run.measurement().meters[0], {}))
+        if (found.name == figure) return found.interval;
+    FAIL("no figure ", figure);
+    return {};
 }
 
 }  // namespace
@@ -140,5 +158,26 @@ TEST_SUITE("long") {
                 const double value = window_mean(e, {133 - 80 + 80 * i, 128, 5, 5}, c).mean;
                 CHECK(value == doctest::Approx(expected[i][c]).epsilon(i == 1 ? 0.02 : 0.003));
             }
+    }
+}
+
+TEST_CASE("examples office, street and led_lens: what their meters read") {
+    struct Stated {
+        const char *scene, *meter, *figure;
+        double value, rounding;
+    };
+    for (const Stated& s :
+         {Stated{"office", "desks", "mean", 508, 0.5}, Stated{"office", "faces", "mean", 246, 0.5},
+          Stated{"street", "carriageway", "mean", 10.6, 0.05},
+          Stated{"street", "carriageway", "U0 = minimum / mean", 0.67, 0.005},
+          Stated{"street", "walkers", "mean", 6.1, 0.05}, Stated{"led_lens", "spot", "flux", 59.0, 0.05}}) {
+        CAPTURE(s.scene);
+        CAPTURE(s.meter);
+        const Interval found = measure_example(s.scene, s.meter, s.figure, 256);
+        CAPTURE(found.low);
+        CAPTURE(found.high);
+        CHECK(found.low - 0.002 * s.value < s.value + s.rounding);
+        CHECK(found.high + 0.002 * s.value > s.value - s.rounding);
+        CHECK(found.high - found.low < 0.05 * s.value);
     }
 }

@@ -169,6 +169,18 @@ class Gltf:
             }
         )
 
+    def lamp(self, name, matrix, class_name, **parameters):
+        """A light of a class of ETD_optics."""
+        self._placed("light", name, matrix, class_name, parameters)
+
+    def receiver(self, name, matrix, class_name, **parameters):
+        """A receiver of a class of ETD_optics."""
+        self._placed("receiver", name, matrix, class_name, parameters)
+
+    def _placed(self, interface, name, matrix, class_name, parameters):
+        optics = {interface: {"class": class_name, **parameters}}
+        self.nodes.append({"name": name, "matrix": matrix, "extensions": {"ETD_optics": optics}})
+
     def camera(self, position, target, yfov_degrees, aspect, name="camera", stokes=False):
         self.cameras.append(
             {
