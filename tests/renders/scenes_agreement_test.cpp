@@ -45,8 +45,10 @@ std::vector<std::filesystem::path> scene_files() {
 }
 
 // The lamps of these scenes are points, which no backward ray meets behind smooth glass, and what they light
-// is seen through the glass by bidirectional rays only: what is seen beside the glass is compared.
-const std::map<std::string, Window> beside_glass = {{"prism", {0, 0, 32, 14}}, {"rainbow", {0, 0, 18, 24}}};
+// is seen through the glass by bidirectional rays only: what is seen beside the glass is compared. No
+// backward ray meets those of a ray file.
+const std::map<std::string, Window> beside_glass = {
+    {"prism", {0, 0, 32, 14}}, {"rainbow", {0, 0, 18, 24}}, {"led_lens", {0, 0, 32, 24}}};
 
 void compare_beside_glass(Scene& scene, const Comparison& c, const Window& window) {
     RenderPlan plan;
