@@ -1,7 +1,7 @@
 # Writes OUT, a C++ file in which FUNCTION of host/embedded_files.h returns every file of FILES (relative to ROOT). Called by the build.
 file(WRITE ${OUT}.new "#include \"host/embedded_files.h\"\nnamespace etendue {\nconst std::vector<EmbeddedFile>& ${FUNCTION}() {\n    static const std::vector<EmbeddedFile> files = {\n")
 foreach(name IN LISTS FILES)
-    if(name MATCHES "\\.(hdr|nrrd|pbsdf)$") # bytes that are no text
+    if(name MATCHES "\\.(dat|hdr|nrrd|pbsdf)$") # bytes that are no text
         file(READ ${ROOT}/${name} bytes HEX)
         string(LENGTH "${bytes}" digits)
         math(EXPR size "${digits} / 2")

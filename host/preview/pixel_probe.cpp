@@ -31,7 +31,7 @@ SeenPoint see_point(PreviewScene& scene, const glm::dvec2& film) {
                       {{"receiver", scene.receiver},
                        {"film_x", float(film.x)},
                        {"film_y", float(film.y)},
-                       {"film_aspect", film_aspect}});
+                       {"aspect", film_aspect}});
     commands.run();
     const Record r = buffer.read_array<Record>(1)[0];
     return {r.hit != 0, glm::dvec3(r.position) + scene.scene.center, r.normal, r.distance, r.material,

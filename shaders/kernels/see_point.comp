@@ -4,7 +4,7 @@ layout(local_size_x = 1) in;
 layout(push_constant) uniform Push {
     uint receiver;
     float film_x, film_y;
-    float film_aspect;
+    float aspect;
 };
 
 #include "stages/emit_camera_ray.glsl"
@@ -20,7 +20,7 @@ struct SeenPoint {
 layout(scalar, set = 0) writeonly buffer SeenPoints { SeenPoint seen_points[]; };
 
 void main() {
-    CameraRay ray = receiver_emit(receiver, vec2(film_x, film_y), vec2(0.5), film_aspect);
+    CameraRay ray = receiver_emit(receiver, vec2(film_x, film_y), vec2(0.5), aspect);
     SeenPoint seen = SeenPoint(0u, vec3(0), vec3(0), 0.0, 0u, NO_RECORD);
     Path path = emit_camera_ray(View(receiver, 0u, 0u, 1u, 1u, 1.0), 0u, 0u, 0u);
     path.origin = ray.origin, path.direction = ray.direction;

@@ -265,7 +265,7 @@ TEST_CASE("no surface makes more polarization than there is light, and light goe
                 CHECK(most < 1e-4);
                 // Near the critical angle of a facet single precision does not tell on which side of it light
                 // is.
-                CHECK(50 * irreversible <= 3 * there.size());
+                if (configurations[record].is_reciprocal) CHECK(50 * irreversible <= 3 * there.size());
             }
     }
 }
