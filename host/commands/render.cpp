@@ -111,10 +111,11 @@ int render_command(const RenderOptions& options) {
                                         options.scene.string()));
 
     RenderSettings settings;
+    std::vector<FilmView> views;
     std::vector<std::string> names;
     for (const Receiver* receiver : receivers) {
         const ImageSize size = image_size(*receiver, options);
-        settings.beside.push_back({receiver->ref, size.width, size.height});
+        views.push_back({receiver->ref, size.width, size.height});
         names.push_back(receiver->name);
         settings.stokes |= receiver->wants_stokes;
         if (receiver->wants_stokes && !scene.features.polarization)
@@ -122,9 +123,7 @@ int render_command(const RenderOptions& options) {
                       fmt::format("warning: {} asks for Stokes vectors: without polarization there are none",
                                   receiver->name));
     }
-    const FilmView first = settings.beside.front();
-    settings.beside.erase(settings.beside.begin());
-    settings.receiver = first.receiver, settings.width = first.width, settings.height = first.height;
+    set_views(settings, views);
     const std::vector<std::filesystem::path> files = output_files(options.output, names);
     for (const auto& file : files)
         if (!file.empty()) check_writable(file);

@@ -33,11 +33,8 @@ struct Addend {
 std::vector<RenderSettings> settings_of(const RenderSettings& common, const std::vector<FilmView>& views) {
     std::vector<RenderSettings> all;
     for (size_t first = 0; first < views.size(); first += most_views) {
-        const size_t end = std::min(first + most_views, views.size());
-        RenderSettings& settings = all.emplace_back(common);
-        settings.receiver = views[first].receiver;
-        settings.width = views[first].width, settings.height = views[first].height;
-        settings.beside.assign(&views[first] + 1, views.data() + end);
+        const size_t count = std::min(most_views, views.size() - first);
+        set_views(all.emplace_back(common), std::span(views).subspan(first, count));
     }
     for (RenderSettings& settings : all) settings.vertex_bytes = common.vertex_bytes / all.size();
     return all;

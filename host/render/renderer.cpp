@@ -342,6 +342,12 @@ std::vector<FilmView> all_views(const RenderSettings& settings) {
     return views;
 }
 
+void set_views(RenderSettings& settings, std::span<const FilmView> views) {
+    const FilmView& first = views.front();
+    settings.receiver = first.receiver, settings.width = first.width, settings.height = first.height;
+    settings.beside.assign(views.begin() + 1, views.end());
+}
+
 FilmShape Renderer::film_shape(size_t view) const {
     FilmShape shape = film_->shape();
     shape.width = views()[view].width, shape.height = views()[view].height;

@@ -59,6 +59,7 @@ struct RenderSettings {
 
 // The first view, and those beside it.
 std::vector<FilmView> all_views(const RenderSettings& settings);
+void set_views(RenderSettings& settings, std::span<const FilmView> views);  // at least one
 
 // Sums over all passes. Importance: every path starts with 1.
 struct RenderCounters {

@@ -4,7 +4,7 @@
 #include "features/receiver_kinds.glsl"
 #include "lib/sampler.glsl"
 
-// Twin: struct View of host/render/views.h.
+// Twin: struct DeviceView of host/render/views.cpp.
 struct View {
     uint receiver;       // RecordRef
     uint index;          // among the views
