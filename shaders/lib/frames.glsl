@@ -16,3 +16,9 @@ mat3 frame_along(vec3 n, vec3 tangent, float handedness) {
     t *= inversesqrt(l);
     return mat3(t, cross(n, t) * handedness, n);
 }
+
+// The axes of a node whatever its scale: its z, the part of its x orthogonal to that, and across both, on the side of its y.
+mat3 node_frame(mat4x3 world_from_local) {
+    vec3 x = normalize(world_from_local[0]), z = normalize(world_from_local[2]);
+    return frame_along(z, x, dot(cross(z, x), world_from_local[1]) < 0.0 ? -1.0 : 1.0);
+}

@@ -44,13 +44,9 @@ layout(scalar, set = 0) readonly buffer PhotometricValues { float photometric_va
 
 // C0, C90 and the lamp's back, in the world.
 mat3 ies_frame(IesLight r) {
-    mat4x3 m = r.placement.world_from_local;
-    vec3 z = normalize(m[2]);
-    vec3 x = normalize(m[0] - z * dot(z, m[0]));
-    vec3 y = cross(z, x);
-    y *= dot(y, m[1]) < 0.0 ? -1.0 : 1.0;
+    mat3 f = node_frame(r.placement.world_from_local);
     vec2 t = cos_sin_turns(r.turn * (0.5 * INV_PI));
-    return mat3(t.x * x + t.y * y, t.x * y - t.y * x, z);
+    return mat3(t.x * f[0] + t.y * f[1], t.x * f[1] - t.y * f[0], f[2]);
 }
 
 // The pole of the table and its longitudes 0 and 90, in the world.

@@ -34,13 +34,7 @@ layout(scalar, set = 0) readonly buffer RayWords { uint ray_words[]; };
 layout(scalar, set = 0) readonly buffer RayColors { SpectrumRef ray_colors[]; };
 
 // The file's axes in the world.
-mat3 rays_frame(RaysLight r) {
-    mat4x3 m = r.placement.world_from_local;
-    vec3 z = normalize(m[2]);
-    vec3 x = normalize(m[0] - z * dot(z, m[0]));
-    vec3 y = cross(z, x);
-    return mat3(x, dot(y, m[1]) < 0.0 ? -y : y, z);
-}
+mat3 rays_frame(RaysLight r) { return node_frame(r.placement.world_from_local); }
 
 float rays_flux(RaysLight r) { return r.file.flux > 0.0 && r.flux > 0.0 ? r.flux : r.file.flux; }
 
