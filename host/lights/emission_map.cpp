@@ -9,10 +9,10 @@ namespace {
 constexpr uint32_t none = 0xFFFFFFFFu;
 constexpr double texels_a_cell = 3;  // along its longest edge: measure_emission takes four rows of points
 constexpr uint64_t most_cells = 1 << 19;  // of all lights, before any is looked at more closely
-constexpr uint32_t most_refined = 100000;
+constexpr uint32_t most_refined = 250000;
 constexpr double tolerance = 0.0004;     // relative variance
 constexpr double even_variance = 0.002;  // relative; a cell whose parts differ by no more is even
-constexpr int most_levels = 18;
+constexpr int most_levels = 21;
 
 using Measure = std::function<std::vector<EmissionSample>(const std::vector<EmissionCell>&)>;
 
@@ -50,7 +50,7 @@ class Builder {
             Cell& c = cells_[i];
             if (c.parts != none) continue;
             c.mean = sample->mean;
-            c.value = std::max(c.mean, 0.1 * double(sample->greatest));
+            c.value = std::max(c.mean, 0.5 * double(sample->greatest));
             if (c.value > 0) c.error = c.area * (sample->mean_square / c.value + c.value - 2 * c.mean);
             ++sample;
         }

@@ -55,7 +55,7 @@ struct EmissionMaps {
 };
 
 // Looks at all texels, as long as there are no more than some million; then more closely at what differs most, until
-// sampling has a relative variance of 0.0004 or 100000 parts are looked at.
+// sampling has a relative variance of 0.0004 or 250000 parts are looked at.
 EmissionMaps build_emission_maps(
     std::span<const EmissionRequest> requests,
     const std::function<std::vector<EmissionSample>(const std::vector<EmissionCell>&)>& measure);

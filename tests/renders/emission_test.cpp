@@ -120,12 +120,18 @@ TEST_CASE("emission: one bright texel of 256 x 256 lights a floor within 1 % aft
             CHECK(scene.power == doctest::Approx(2 * pi * 1e6 / 65536).epsilon(0.01));
             for (Algorithm algorithm : {Algorithm::backward, Algorithm::bidirectional}) {
                 const Estimates e = render_estimates(
-                    scene, {.width = 8, .height = 8, .passes = 256, .seeds = 1, .algorithm = algorithm});
+                    scene, {.width = 32, .height = 32, .passes = 256, .seeds = 1, .algorithm = algorithm});
                 CAPTURE(nearest);
                 CAPTURE(algorithm_name(algorithm));
+                int beyond = 0;
                 double worst = 0;
-                for (double value : e.mean) worst = std::max(worst, std::abs(value / expected - 1));
-                CHECK(worst < 0.01);
+                for (double value : e.mean) {
+                    const double off = std::abs(value / expected - 1);
+                    beyond += off > 0.01, worst = std::max(worst, off);
+                }
+                CHECK(beyond <= 1);  // of 1024, at 3.7 standard deviations
+                CAPTURE(color == ColorMode::rgb);
+                CHECK(worst < 0.015);
             }
         }
         if (!nearest) continue;
