@@ -69,6 +69,10 @@ CLI::App* add_measure(CLI::App& app, MeasureOptions& options, MeasureArguments& 
         ->add_option("--points", arguments.points,
                      "Uniformity over 5, 9 or 13 points, or over those given in parts of width and height")
         ->option_text("5|9|13|X,Y;…");
+    measure
+        ->add_option("--glare-from", arguments.glare_from,
+                     "Luminance, cd/m², above which something glares: for UGR (default: 500)")
+        ->option_text("L");
     add_shared(*measure, options, arguments.shared,
                {{"variant"}, {"at"}, {"environment"}, {"algorithm", "How light is traced (default: auto)"}});
     measure
@@ -112,6 +116,8 @@ void finish_measure(MeasureOptions& options, const MeasureArguments& arguments, 
     options.worst = arguments.error_of == "worst";
     if (arguments.receivers != "all") options.receivers = split(arguments.receivers, ',');
     if (arguments.points) options.points = parse_points(*arguments.points);
+    if (arguments.glare_from)
+        options.glare_from = parse_positive(*arguments.glare_from, "--glare-from", ", in cd/m²");
     finish_shared(options, arguments.shared);
     options.seed = parse_count(arguments.shared.seed, "--seed", 0, UINT32_MAX);
     options.algorithm = parse_algorithm(arguments.shared.algorithm, "--algorithm");

@@ -9,7 +9,7 @@ namespace etendue {
 
 // Arguments as text (host/cli/values.h).
 struct MeasureArguments {
-    std::optional<std::string> passes, seconds, error, forward_paths, points;
+    std::optional<std::string> passes, seconds, error, forward_paths, points, glare_from;
     std::string receivers = "all", error_of = "mean";
     SharedArguments shared;
 };

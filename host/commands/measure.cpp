@@ -149,7 +149,7 @@ int measure_command(const MeasureOptions& options) {
         if (!options.quiet)
             for (const Readings& readings : measurement.meters)
                 fmt::print("{}\n{}\n", readings.meter.name,
-                           as_text(figure_table(figures_of(readings, options.points))));
+                           as_text(figure_table(figures_of(readings, report.points, report.glare_from))));
     }
     if (!options.checkpoint.empty() && measurement.passes.count() > 0) outputs.write(save);
     outputs.finish();

@@ -85,6 +85,7 @@ Checkpoint to_checkpoint(const nlohmann::json& identity, const Measurement& meas
     checkpoint.identity = identity;
     checkpoint.about = {
         {"scene", options.scene.string()}, {"points", nlohmann::json::array()}, {"devices", devices}};
+    checkpoint.about["glare_from"] = options.glare_from.value_or(usual_glare_from);
     for (const glm::dvec2& point : options.points) checkpoint.about["points"].push_back({point.x, point.y});
     keep(measurement, checkpoint);
     return checkpoint;
@@ -146,7 +147,7 @@ void merge_measurement(Checkpoint& all, Checkpoint& part, const std::filesystem:
 
 ReportOptions report_options(const Checkpoint& checkpoint, const std::filesystem::path& folder,
                              const std::string& command_line) {
-    ReportOptions options{folder, {}, {}};
+    ReportOptions options{.folder = folder, .glare_from = checkpoint.about.at("glare_from")};
     for (const nlohmann::json& point : checkpoint.about.at("points"))
         options.points.push_back({point.at(0), point.at(1)});
     std::string devices;

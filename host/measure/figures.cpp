@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "host/error.h"
+#include "host/measure/glare.h"
 #include "host/spectra/color.h"
 
 namespace etendue {
@@ -204,7 +205,8 @@ std::vector<MeterPoint> standard_points(uint32_t count) {
     return points;
 }
 
-std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points) {
+std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points,
+                               double glare_from) {
     const Meter& meter = readings.meter;
     const auto values = luminous_values(readings);
     const std::vector<double> weights = weights_of(meter);
@@ -230,7 +232,8 @@ std::vector<Figure> figures_of(const Readings& readings, const std::vector<Meter
         figures.push_back({"Ud = minimum / maximum", "", ratio(least, greatest), ""});
     }
     if (!points.empty() && !meter.is_far && meter.pixels() > 1) add_points(figures, meter, values, points);
-    for (Figure& figure : color_figures(readings, weights)) figures.push_back(std::move(figure));
+    std::ranges::move(glare_figures(meter, values, glare_from), std::back_inserter(figures));
+    std::ranges::move(color_figures(readings, weights), std::back_inserter(figures));
     return figures;
 }
 

@@ -51,6 +51,9 @@ using MeterPoint = glm::dvec2;
 // each side; 5: their corners and middle; 13: the 9, and four at 1/10 and 9/10.
 std::vector<MeterPoint> standard_points(uint32_t count);
 
+// Luminance, cd/m², above which something glares: lamps do, lit walls don't.
+constexpr double usual_glare_from = 500;
+
 // Bins of a spectrum below which they are too wide for colour rendering: 10 nm.
 constexpr uint32_t least_rendering_bins = 47;
 
@@ -58,8 +61,9 @@ constexpr uint32_t least_rendering_bins = 47;
 // colour rendering.
 std::vector<Figure> color_figures(const Readings& readings, const std::vector<double>& weights);
 
-// `points`: for uniformity; empty = none.
-std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points);
+// `points`: for uniformity; empty = none. `glare_from`: see host/measure/glare.h.
+std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points,
+                               double glare_from = usual_glare_from);
 
 // Half the interval of a meter's mean, by its value: what --error asks. Infinite where it is 0.
 double relative_error_of_mean(const Readings& readings);

@@ -50,7 +50,7 @@ std::string meter_section(const ReportOptions& options, const Measurement& measu
     const Meter& meter = readings.meter;
     std::string html = fmt::format("<h2>{}</h2>\n<p>{} × {} pixels, {}.</p>\n", escaped(meter.name),
                                    meter.columns, meter.rows, meter.unit);
-    html += as_html(figure_table(figures_of(readings, options.points)));
+    html += as_html(figure_table(figures_of(readings, options.points, options.glare_from)));
     if (is_dark(readings))
         html +=
             fmt::format("<p class=\"note\">{}</p>\n", escaped(darkness_text(readings, measurement.power)));

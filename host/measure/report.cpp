@@ -51,10 +51,10 @@ std::string pixel_table(const Readings& readings, const Image& image) {
     return text;
 }
 
-Table all_figures(const Measurement& measurement, const std::vector<MeterPoint>& points) {
+Table all_figures(const Measurement& measurement, const ReportOptions& options) {
     Table table = {{"meter", "figure", "unit", "value", "low_95", "high_95", "where"}};
     for (const Readings& readings : measurement.meters) {
-        for (const Figure& f : figures_of(readings, points))
+        for (const Figure& f : figures_of(readings, options.points, options.glare_from))
             table.push_back({readings.meter.name, f.name, f.unit, fmt::format("{:.8g}", f.interval.value),
                              fmt::format("{:.8g}", f.interval.low), fmt::format("{:.8g}", f.interval.high),
                              f.where});
@@ -114,7 +114,7 @@ std::vector<std::string> write_report(const ReportOptions& options, const Measur
     std::vector<std::string> notes;
     const std::vector<std::string> names = file_names(measurement);
     outputs.write([&] {
-        write_atomically(options.folder / "figures.csv", as_csv(all_figures(measurement, options.points)));
+        write_atomically(options.folder / "figures.csv", as_csv(all_figures(measurement, options)));
     });
     std::string script;
     for (size_t m = 0; m < names.size(); ++m) {

@@ -20,6 +20,7 @@ namespace etendue {
 struct ReportOptions {
     std::filesystem::path folder;
     std::vector<MeterPoint> points;  // for uniformity; empty = none
+    double glare_from = usual_glare_from;
     std::map<std::string, Attribute>
         attributes;  // of the images, and named on the page: scene, command, seed …
 };

@@ -81,6 +81,7 @@ struct PlacedObject {
     uint32_t material = 0;      // geometry only
     bool wants_stokes = false;  // receivers: S1 to S3 are wanted, too
     glm::dvec3 stokes{0};       // lights: S1 to S3 over S0, x being the node's
+    std::optional<uint32_t> shape = {};  // lights: index of the geometry at the same node
 };
 
 // 8-bit images keep their bytes; float images (.hdr, .exr) are linear.

@@ -133,6 +133,9 @@ void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value
     } else if (type == "PhotometryRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of an .ies or .ldt file", place);
         store(record, at, resolver.photometry(value.get<std::string>()));
+    } else if (type == "OwnShape") {
+        if (!value.is_boolean()) fail_input("{}: allowed: true, false", place);
+        store(record, at, value.get<bool>() ? resolver.own_shape(where) : no_record);
     } else if (type == "RayFileRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of a ray file", place);
         store(record, at, resolver.rays(value.get<std::string>(), info, record, where));
@@ -254,6 +257,8 @@ ClassConstants RecordBuffer::constant_members(const ClassInfo& info,
         constexpr uint32_t one = 0x3F800000u;
         if (type == "TextureRef" && *bits == no_record) {
             constants.statements += fmt::format("r.{}.index = NO_RECORD; ", name);
+        } else if (type == "OwnShape") {
+            if (*bits == no_record) constants.statements += fmt::format("r.{}.primitive = NO_RECORD; ", name);
         } else if (type == "MuellerTableRef") {
             constants.statements += fmt::format("r.{}.index = {}u; ", name, *bits);
         } else if (p.default_value.is_boolean()) {

@@ -37,6 +37,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     resolver_.world_point = [this](const glm::dvec3& point) { return glm::vec3(point - out_.center); };
     resolver_.measured = [this](const std::filesystem::path& file) { return add_measured(file); };
     resolver_.mueller_table = [this](const std::filesystem::path& file) { return add_mueller_table(file); };
+    resolver_.own_shape = [this](const std::string& where) { return own_shape(where); };
     resolver_.photometry = [this](const std::filesystem::path& file) { return add_photometry(file); };
     resolver_.sky = [this](const ClassInfo& info, const std::vector<std::byte>& record,
                            const std::string& where) { return add_sky(info, record, where); };

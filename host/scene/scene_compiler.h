@@ -92,6 +92,7 @@ class SceneCompiler {
     glm::dmat4 recentred(const glm::dmat4& world_from_local) const;
 
     // scene_lights.cpp
+    uint32_t own_shape(const std::string& where);
     PhotometryRef add_photometry(const std::filesystem::path& file);
     SkyRef add_sky(const ClassInfo& info, const std::vector<std::byte>& record, const std::string& where);
     RayFileRef add_rays(const std::filesystem::path& file, const ClassInfo& info,
@@ -101,6 +102,7 @@ class SceneCompiler {
     void add_lights();
     const glm::dmat4& placed_transform(uint32_t index) const;
     void drop_dark_triangles(std::vector<uint32_t>& primitives);
+    uint32_t primitive_of_light(uint32_t i) const;
     void measure_lights();
     void name_lights(const std::map<uint32_t, uint32_t>& positions);
     std::vector<LightBounds> run_measurement();
@@ -149,6 +151,8 @@ class SceneCompiler {
     std::vector<LightStokes> light_stokes_;                        // … as well
     uint32_t first_area_light_ = 0;                                // in lights_, before they are sorted
     std::vector<uint32_t> area_primitives_;                        // of each area light
+    uint32_t opening_ = no_record;                                 // primitive of the light being added
+    std::vector<uint32_t> opening_lights_;                         // … of each placed light
 };
 
 }  // namespace etendue

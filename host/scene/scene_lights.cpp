@@ -32,6 +32,23 @@ LightStokes light_stokes(const glm::dvec3& stokes, const glm::dmat4& world_from_
 
 }  // namespace
 
+// That primitive becomes part of the light that is being added.
+uint32_t SceneCompiler::own_shape(const std::string& where) {
+    const std::string place = message_place(in_, where);
+    const auto shape = in_.lights.at(opening_lights_.size()).shape;
+    const std::string name = shape ? in_.shapes[*shape].object.class_name : "";
+    if (name != "rectangle" && name != "disk")
+        fail_input("{}/opening: {}; allowed: true where the node has a rectangle or disk", place,
+                   shape ? "the node's geometry is a " + name : "the node has no geometry");
+    const std::vector<uint32_t>& placed = *out_.placed;
+    const auto found = std::find(placed.begin(), placed.end(), uint32_t(in_.instances.size() + *shape));
+    const uint32_t primitive = uint32_t(found - placed.begin());
+    if (materials_[memory_.world.primitives[primitive].material].emission.rgb != glm::vec3(0))
+        fail_input("{}/opening: the material of the node's geometry emits light already; allowed: one that emits none", place);
+    opening_ = primitive;
+    return primitive;
+}
+
 PhotometryRef SceneCompiler::add_photometry(const std::filesystem::path& file) {
     const auto embedded = in_.embedded_files.find(file.string());
     const bool is_embedded = embedded != in_.embedded_files.end();
@@ -130,7 +147,9 @@ void SceneCompiler::add_lights() {
     light_names_.assign(infinite.size(), "environment");
     light_stokes_.assign(infinite.size(), {});
     for (const PlacedObject& light : in_.lights) {
+        opening_ = no_record;
         const Added added = add_record(Interface::light, light.object, recentred(light.world_from_local));
+        opening_lights_.push_back(opening_);
         finite.push_back(added);  // sorted by what measure_lights finds
         light_names_.push_back(light.name);
         light_stokes_.push_back(light_stokes(light.stokes, light.world_from_local));
@@ -205,6 +224,13 @@ void SceneCompiler::drop_dark_triangles(std::vector<uint32_t>& primitives) {
     memory_.lit = {key, textures_, primitives};
 }
 
+// By index in lights_: what rays hit to meet the light; no_record = nothing.
+uint32_t SceneCompiler::primitive_of_light(uint32_t i) const {
+    if (i >= first_area_light_) return area_primitives_[i - first_area_light_];
+    const size_t infinite = first_area_light_ - opening_lights_.size();
+    return i < infinite ? no_record : opening_lights_[i - infinite];
+}
+
 // Power and extent of every light, found out by the classes on the device; then the order of the list, the
 // tree, and the scale of materials whose emission is given as the power of the whole object.
 void SceneCompiler::measure_lights() {
@@ -240,20 +266,18 @@ void SceneCompiler::measure_lights() {
     std::vector<double> powers;
     std::map<uint32_t, uint32_t> positions;
     for (uint32_t position = 0; position < order.size(); ++position) {
-        const uint32_t i = order[position];
+        const uint32_t i = order[position], primitive = primitive_of_light(i);
         sorted_lights.push_back(lights_[i]);
         sorted_stokes.push_back(light_stokes_[i]);
         out_.features.polarized_lights |= light_stokes_[i].stokes != glm::vec3(0);
         out_.light_names.push_back(light_names_[i]);
         out_.light_shapes.push_back(
-            i < first_area_light_
-                ? ""
-                : out_.placed_names[out_.placed->at(area_primitives_[i - first_area_light_])]);
+            primitive == no_record ? "" : out_.placed_names[out_.placed->at(primitive)]);
         sorted_bounds.push_back(bounds[i]);
         powers.push_back(bounds[i].power);
         if (is_unmet(bounds[i])) out_.unmet_lights.push_back(light_names_[i]);
         out_.power += bounds[i].power;
-        if (i >= first_area_light_) positions[area_primitives_[i - first_area_light_]] = position;
+        if (primitive != no_record) positions[primitive] = position;
     }
     const LightTree tree = build_light_tree(sorted_bounds);
     out_.features.light_tree = tree.is_tree;

@@ -4,7 +4,9 @@
 //
 // Light comes from all of its luminous opening, as the file has it (`etendue inspect` tells), with its centre at the node: every part
 // of it sends light as the file says of the whole lamp. A rectangle or disk so has the radiance I / (A cos); boxes, tubes and balls
-// shine evenly from within. The opening is no surface: what is seen of the lamp itself is black, in mirrors, too.
+// shine evenly from within. Such an opening is no surface: nothing of the lamp itself is seen, in mirrors neither.
+// With a rectangle or disk at the same node and `opening` true that is the luminous opening instead of the file's, and is seen as
+// it shines, with the radiance I / (A cos); its material says what it reflects.
 //
 // Intensity is bilinear in both angles of the table and 0 beyond its ends. Directions are sampled exactly in proportion to it: the
 // angle from the pole by its integral, then the longitude within that.
@@ -12,6 +14,7 @@
 // Example:
 //     {"nodes": [{"name": "wall washer", "translation": [0, 1.9, 0.3], "rotation": [-0.7071, 0, 0, 0.7071], "extensions": {"ETD_optics": {
 //         "light": {"class": "ies", "file": "washer.ies", "turn": 1.57, "flux": 40}}}}]}
+#include "lib/primitives.glsl"
 
 // A table on the device, twin in host/photometry/photometric_table.h. Layout of photometric_values from `first`, with M angles and
 // N planes:
@@ -30,6 +33,11 @@ struct PhotometryRef {
     vec3 size;       // m, along C0, C90 and z
 };
 
+// The primitive of a shape at the light's own node; NO_RECORD = none.
+struct OwnShape {
+    uint primitive;
+};
+
 struct IesLight {
     Placement placement;
     PhotometryRef file;  //: required. Photometric file, .ies or .ldt.
@@ -38,6 +46,7 @@ struct IesLight {
     SpectrumRef color;   //: 1 in [0, inf). Multiplies the intensity.
     float turn;          //: 0 rad. Turns the lamp about -z, from C0 to C90: makers differ in where C0 is.
     bool point;          //: false. All light comes from the node, whatever the luminous opening.
+    OwnShape opening;    //: false. The rectangle or disk of the node is the luminous opening, and is seen.
 };
 
 layout(scalar, set = 0) readonly buffer PhotometricValues { float photometric_values[]; };
@@ -56,6 +65,12 @@ mat3 ies_axes(IesLight r) {
 }
 
 bool ies_is_point(IesLight r) { return r.point || r.file.shape == 0u; }
+bool ies_is_seen(IesLight r) { return r.opening.primitive != NO_RECORD; }
+
+// What of an area A is seen along the direction, m².
+float ies_seen_area(IesLight r, vec3 normal, vec3 direction) {
+    return primitive_area(r.opening.primitive) * max(abs(dot(normal, direction)), 1e-6);
+}
 
 // A point of the opening, evenly: a lower part of u serves as a third number.
 vec3 ies_position(IesLight r, vec2 u) {
@@ -142,22 +157,30 @@ float ies_row_inverse(float a, float b, float start, float width, float integral
 
 // A point of the opening is drawn here and in emit alike, so that what is left to say of both is what is said of a point.
 LightSample ies_sample_towards(IesLight r, vec3 point, vec2 u) {
-    vec3 d = ies_position(r, u) - point;
+    GeometrySample g = GeometrySample(vec3(0), vec3(0, 0, 1), 0.0);
+    vec3 error;
+    if (ies_is_seen(r)) g = primitive_sample(r.opening.primitive, u, error);
+    else g.position = ies_position(r, u);
+    vec3 d = g.position - point;
     float distance = length(d);
     if (!(distance > 0.0)) return no_light_sample();
     vec3 direction = d / distance;
     float candela = ies_table(r, -direction);
     if (!(candela > 0.0)) return no_light_sample();
-    return LightSample(direction, distance, untinted_value(r.color) * (candela * ies_scale(r)), square(distance),
-                       candela / r.file.flux, true);
+    float area = ies_is_seen(r) ? ies_seen_area(r, g.normal, direction) : 1.0;
+    return LightSample(direction, distance, untinted_value(r.color) * (candela * ies_scale(r) / area), square(distance) / area,
+                       candela / (r.file.flux * area), !ies_is_seen(r));
 }
 
 float ies_pdf_towards(IesLight r, vec3 point, vec3 direction, LightHit hit) {
     vec3 d = hit.position - point;
-    return dot(d, d);
+    return dot(d, d) / (ies_is_seen(r) ? ies_seen_area(r, hit.normal, direction) : 1.0);
 }
 
-Spectrum ies_radiance(IesLight r, vec3 direction, LightHit hit) { return Spectrum(0); }
+Spectrum ies_radiance(IesLight r, vec3 direction, LightHit hit) {
+    if (!ies_is_seen(r)) return Spectrum(0);
+    return untinted_value(r.color) * (ies_table(r, -direction) * ies_scale(r) / ies_seen_area(r, hit.normal, direction));
+}
 
 EmittedRay ies_emit(IesLight r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
     PhotometryRef f = r.file;
@@ -193,16 +216,28 @@ EmittedRay ies_emit(IesLight r, SceneBounds bounds, vec2 u_position, vec2 u_dire
     vec2 polar = cos_sin_turns((start + angle) * (0.5 * INV_PI));
     vec2 around = cos_sin_turns((f.start + here + x * step) * (0.5 * INV_PI));
     vec3 direction = normalize(ies_axes(r) * vec3(polar.x, polar.y * around));
-    return EmittedRay(ies_position(r, u_position), vec3(0), direction, direction,
-                      untinted_value(r.color) * (candela * ies_scale(r)), candela / f.flux, true, true);
+    Spectrum intensity = untinted_value(r.color) * (candela * ies_scale(r));
+    if (!ies_is_seen(r))
+        return EmittedRay(ies_position(r, u_position), vec3(0), direction, direction, intensity, candela / f.flux, true, true);
+    vec3 error;
+    GeometrySample g = primitive_sample(r.opening.primitive, u_position, error);
+    float area = ies_seen_area(r, g.normal, direction);
+    bool front = dot(g.normal, direction) > 0.0;
+    return EmittedRay(g.position, error, front ? g.normal : -g.normal, direction, intensity / area, candela / (f.flux * area), false, front);
 }
 
-float ies_pdf_emit(IesLight r, SceneBounds bounds, vec3 direction, LightHit hit) { return ies_density(r, -direction); }
+float ies_pdf_emit(IesLight r, SceneBounds bounds, vec3 direction, LightHit hit) {
+    return ies_density(r, -direction) / (ies_is_seen(r) ? ies_seen_area(r, hit.normal, direction) : 1.0);
+}
 
 float ies_power(IesLight r, SceneBounds bounds) { return r.file.flux * ies_scale(r) * luminance(untinted_value(r.color)); }
 
 void ies_bounds(IesLight r, out vec3 lo, out vec3 hi) {
     lo = hi = r.placement.world_from_local[3];
+    if (ies_is_seen(r)) {
+        primitive_bounds(r.opening.primitive, lo, hi);
+        return;
+    }
     if (ies_is_point(r)) return;
     mat3 f = ies_frame(r);
     vec3 extent = 0.5 * (abs(f[0]) * r.file.size.x + abs(f[1]) * r.file.size.y + abs(f[2]) * r.file.size.z);

@@ -161,7 +161,7 @@ TEST_SUITE("long") {
     }
 }
 
-TEST_CASE("examples office, street and led_lens: what their meters read") {
+TEST_CASE("examples to be measured: what their meters read") {
     struct Stated {
         const char *scene, *meter, *figure;
         double value, rounding;
@@ -170,7 +170,8 @@ TEST_CASE("examples office, street and led_lens: what their meters read") {
          {Stated{"office", "desks", "mean", 508, 0.5}, Stated{"office", "faces", "mean", 246, 0.5},
           Stated{"street", "carriageway", "mean", 10.6, 0.05},
           Stated{"street", "carriageway", "U0 = minimum / mean", 0.67, 0.005},
-          Stated{"street", "walkers", "mean", 6.1, 0.05}, Stated{"led_lens", "spot", "flux", 59.0, 0.05}}) {
+          Stated{"street", "walkers", "mean", 6.1, 0.05}, Stated{"led_lens", "spot", "flux", 59.0, 0.05},
+          Stated{"office", "eye", "UGR, sources above 500 cd/m²", 18.5, 0.05}}) {
         CAPTURE(s.scene);
         CAPTURE(s.meter);
         const Interval found = measure_example(s.scene, s.meter, s.figure, 256);
@@ -179,5 +180,20 @@ TEST_CASE("examples office, street and led_lens: what their meters read") {
         CHECK(found.low - 0.002 * s.value < s.value + s.rounding);
         CHECK(found.high + 0.002 * s.value > s.value - s.rounding);
         CHECK(found.high - found.low < 0.05 * s.value);
+    }
+}
+
+// The closed forms of an integrating sphere: E = flux / area / (1 - reflectance (1 - open part)).
+TEST_CASE("example integrating_sphere: wall, port and spot") {
+    const double wall = 1000 / std::numbers::pi / (1 - 0.95 * 0.99);
+    for (const auto& [meter, figure, expected] :
+         {std::tuple{"wall", "mean", wall}, std::tuple{"port", "flux", 0.01 * std::numbers::pi * wall},
+          std::tuple{"spot", "mean", 0.95 * wall / std::numbers::pi}}) {
+        CAPTURE(meter);
+        const Interval found = measure_example("integrating_sphere", meter, figure, 65536);
+        CAPTURE(found.value);
+        CHECK(found.low - 0.002 * expected < expected);  // the sphere is a mesh
+        CHECK(found.high + 0.002 * expected > expected);
+        CHECK(found.high - found.low < 0.02 * expected);
     }
 }

@@ -188,3 +188,48 @@ TEST_CASE("the luminous opening of a photometric lamp is where its light comes f
     check({{"class", "ies"}, {"file", disk}}, 2, 0, 628.3185 / std::numbers::pi);
     check({{"class", "ies"}, {"file", disk}}, 2, 1, 460.0756 / std::numbers::pi);
 }
+
+// The same panel, 1000 cd straight down, as the rectangle of its node: 2000 cd/m² from all sides, and what it reflects.
+TEST_CASE("a luminous opening that is seen shines as its file says, and all algorithms agree on it") {
+    const auto hang = [](SceneBuilder& s, json geometry, double turn) {
+        s.placed("light",
+                 {{"class", "ies"},
+                  {"file", file_of("own_lambert_iesna91_one_per_line.ies")},
+                  {"turn", turn},
+                  {"opening", true}},
+                 {{0, 1.2, 0}, {-h, 0, 0, h}});
+        s.document["nodes"].back()["extensions"]["ETD_optics"]["geometry"] = std::move(geometry);
+    };
+    SceneBuilder s;
+    add_room(s);
+    s.sphere(0.4, s.surface({{"class", "conductor"}, {"alpha", 0}}), at(-0.5, -1.2, 0.2));
+    hang(s, {{"class", "rectangle"}, {"size", {1, 0.5}}, {"material", s.lambertian(0.5)}}, 0.7);
+    s.placed("receiver", {{"class", "luminance_meter"}, {"angle", 0.02}}, {{0.1, -0.5, 0.1}, {h, 0, 0, h}});
+    s.document["nodes"].back()["name"] = "straight up";
+    Scene scene = compile_test_scene(s.import());
+    CHECK(scene.power == doctest::Approx(1000 * std::numbers::pi).epsilon(0.002));
+    for (const Algorithm algorithm : {Algorithm::backward, Algorithm::bidirectional}) {
+        const WindowMean seen = measured(scene, "straight up", algorithm, 4096);
+        const double reflected = seen.mean - 2000;  // of what the room sends up, with some hundred lx
+        CHECK(reflected > 0);
+        CHECK(reflected < 100);
+    }
+    check_against_backward(scene, {.backward = 256, .forward = 64, .bidirectional = 16, .largest_error = 0.03});
+
+    const auto refused = [&](const json& geometry, const std::string& what) {
+        SceneBuilder bad;
+        add_room(bad);
+        bad.surface({{"class", "absorber"}});
+        hang(bad, geometry, 0);
+        if (geometry.is_null()) bad.document["nodes"].back()["extensions"]["ETD_optics"].erase("geometry");
+        try {
+            compile_test_scene(bad.import());
+            FAIL("compiled: ", what);
+        } catch (const Error& e) {
+            CAPTURE(e.what());
+            CHECK(std::string(e.what()).find(what) != std::string::npos);
+        }
+    };
+    refused(nullptr, "the node has no geometry; allowed: true where the node has a rectangle or disk");
+    refused({{"class", "sphere"}, {"radius", 1}, {"material", 0}}, "the node's geometry is a sphere");
+}

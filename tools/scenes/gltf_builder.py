@@ -169,9 +169,11 @@ class Gltf:
             }
         )
 
-    def lamp(self, name, matrix, class_name, **parameters):
-        """A light of a class of ETD_optics."""
+    def lamp(self, name, matrix, class_name, shape=None, **parameters):
+        """A light of a class of ETD_optics; `shape`: the geometry at its node, too."""
         self._placed("light", name, matrix, class_name, parameters)
+        if shape:
+            self.nodes[-1]["extensions"]["ETD_optics"]["geometry"] = shape
 
     def receiver(self, name, matrix, class_name, **parameters):
         """A receiver of a class of ETD_optics."""

@@ -17,7 +17,7 @@ from furnaces import furnace_closed, furnace_rough, furnace_smooth, spheres
 from grin import grin
 from lights import lamps, many_lights
 from manual import write_showcases
-from measured import led_lens, office, street
+from measured import integrating_sphere, led_lens, office, street
 from polarization import fresnel_rhomb, glass_table, polarizers, retarders
 from scattering import cloud, fogbow, glass_in_fog
 from surfaces import films, finishes, materials
@@ -49,6 +49,7 @@ SCENES = [
     office,
     street,
     led_lens,
+    integrating_sphere,
     furnace_smooth,
     furnace_rough,
     furnace_closed,

@@ -43,8 +43,8 @@ def office():
     s = Gltf(
         "office",
         "A room of 5 x 4 m, 2.8 m high (reflectances 0.7, 0.5, 0.2), with four luminaires of 3400 lm in its ceiling, from the file"
-        " office.ldt. The meters: `desks`, 0.75 m above the floor and half a metre from the walls, and `faces`, cylindrical"
-        " illuminance at 1.2 m. `etendue measure` finds 508 lx on the desks (EN 12464-1 asks 500), the least 0.82 of that, and 246 lx at the faces.",
+        " office.ldt. The meters: `desks`, 0.75 m above the floor and half a metre from the walls, `faces`, cylindrical"
+        " illuminance at 1.2 m, and `eye`, all luminances before an observer who sits at the wall, for UGR. `etendue measure` finds 508 lx on the desks (EN 12464-1 asks 500), the least 0.82 of that, and 246 lx at the faces.",
     )
     ceiling = s.surface("ceiling", "lambertian", reflectance=0.7)
     wall = s.surface("wall", "lambertian", reflectance=0.5)
@@ -60,12 +60,15 @@ def office():
         3400,
         600,
     )
+    cover = s.surface("cover", "lambertian", reflectance=0.7)
+    panel = {"class": "rectangle", "size": [0.6, 0.6], "material": cover}
     for x in (-1.25, 1.25):
         for z in (-1, 1):
-            s.lamp("panel", look_along([x, 2.795, z], DOWN, (0, 0, -1)), "ies", file="office.ldt")
+            s.lamp("panel", look_along([x, 2.795, z], DOWN, (0, 0, -1)), "ies", shape=panel, file="office.ldt", opening=True)
     s.camera([2.3, 1.6, 1.85], [-0.6, 0.95, -0.8], 62, 3 / 2)
     s.receiver("desks", level(0.75), "illuminance", size=[4, 3], resolution=[16, 12])
     s.receiver("faces", level(1.2), "illuminance", size=[4, 3], resolution=[8, 6], shape="cylinder")
+    s.receiver("eye", look_along([2.2, 1.2, 1.2], [-1, 0, -0.2]), "luminance_meter", angle=3.1415926, resolution=[384, 192])
     return s
 
 
@@ -114,4 +117,38 @@ def led_lens():
     s.shape("screen", "rectangle", screen, matrix=facing([0, 0, -0.5], [0, 0, 1]), size=[0.5, 0.5])
     s.camera([0.16, 0.1, 0.1], [0, 0, -0.45], 50, 4 / 3)
     s.receiver("spot", facing([0, 0, -0.5], [0, 0, 1]), "illuminance", size=[0.5, 0.5], resolution=[50, 50])
+    return s
+
+
+def integrating_sphere():
+    s = Gltf(
+        "integrating_sphere",
+        "A sphere of radius 0.5 m, white within (reflectance 0.95), with an opening of a hundredth of its area, and 1000 lm from a lamp"
+        " in its centre. The meters: `wall`, illuminance near the wall; `port`, what comes out; `spot`, the luminance of the wall through the port."
+        " Light that fills a sphere evenly gives E = flux / area / (1 - 0.95 x 0.99) = 5349.7 lx on the wall, 168.07 lm at the port,"
+        " and a luminance of 0.95 E / pi = 1617.7 cd/m².",
+    )
+    white = s.surface("white", "lambertian", reflectance=0.95)
+    radius, open_part, columns, rows = 0.5, 0.01, 128, 96
+    rim = math.acos(1 - 2 * open_part)  # around +z
+    points = [[0, 0, -radius]]
+    for row in range(rows):
+        angle = rim + (math.pi - rim) * row / rows
+        r, z = radius * math.sin(angle), radius * math.cos(angle)
+        turns = [2 * math.pi * i / columns for i in range(columns)]
+        points += [[r * math.cos(a), r * math.sin(a), z] for a in turns]
+    triangles = []
+    for row in range(rows):
+        for i in range(columns):
+            a, b = (1 + row * columns + k % columns for k in (i, i + 1))
+            if row + 1 < rows:
+                triangles += [[a, b, b + columns], [a, b + columns, a + columns]]
+            else:
+                triangles.append([a, b, 0])
+    s.mesh("sphere", white, points, triangles)
+    s.light("lamp", "point", 1000 / (4 * math.pi), look_along([0, 0, 0], [0, 0, -1]))
+    s.camera([0.5, 0.25, 1.2], [0, 0, 0.3], 40, 4 / 3)
+    s.receiver("wall", facing([0, -0.498, 0], [0, 1, 0], (0, 0, -1)), "illuminance", size=[0.02, 0.02], resolution=[1, 1])
+    s.receiver("port", facing([0, 0, 0.4905], [0, 0, -1]), "illuminance", size=[0.21, 0.21], resolution=[1, 1])
+    s.receiver("spot", look_along([0.1, 0, 1], [-0.1, 0, -0.6]), "luminance_meter", angle=0.05)
     return s
