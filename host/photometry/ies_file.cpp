@@ -189,6 +189,22 @@ double read_tilt(Numbers& numbers, IntensityDistribution& d) {
     return factors.front();
 }
 
+// The same from a file beside the photometric one.
+double read_tilt_file(const std::string& name, const std::optional<std::filesystem::path>& folder,
+                      IntensityDistribution& d) {
+    const std::filesystem::path plain = std::filesystem::path(name).filename();
+    std::error_code failure;
+    if (!folder || plain != name || !std::filesystem::is_regular_file(*folder / plain, failure)) {
+        d.warnings.push_back(
+            fmt::format("TILT={}: no such file beside it; the lamp is taken as untilted", name));
+        return 1;
+    }
+    const PhotometricText text =
+        photometric_text((*folder / plain).string(), read_photometric_bytes(*folder / plain));
+    Numbers numbers(text, 0);
+    return read_tilt(numbers, d);
+}
+
 struct Header {
     double lamps, lumens, multiplier, factor, watts;
     size_t v, h, type;
@@ -226,10 +242,11 @@ Header read_header(Numbers& numbers, int year, IntensityDistribution& d) {
 }  // namespace
 
 IntensityDistribution read_ies(const std::filesystem::path& file) {
-    return parse_ies(file.string(), read_photometric_bytes(file));
+    return parse_ies(file.string(), read_photometric_bytes(file), file.parent_path());
 }
 
-IntensityDistribution parse_ies(const std::string& name, std::string bytes) {
+IntensityDistribution parse_ies(const std::string& name, std::string bytes,
+                                const std::optional<std::filesystem::path>& folder) {
     const PhotometricText text = photometric_text(name, std::move(bytes));
     IntensityDistribution d;
     std::string tilt;
@@ -245,8 +262,7 @@ IntensityDistribution parse_ies(const std::string& name, std::string bytes) {
     if (how == "INCLUDE")
         tilt_factor = read_tilt(numbers, d);
     else if (how != "NONE")
-        d.warnings.push_back(
-            fmt::format("TILT={}: that file is not read; the lamp is taken as untilted", tilt));
+        tilt_factor = read_tilt_file(tilt, folder, d);
 
     Header header = read_header(numbers, year, d);
     header.factor *= tilt_factor;

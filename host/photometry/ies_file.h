@@ -1,5 +1,6 @@
 // Photometric files of IES LM-63, of 1986, 1991, 1995, 2002 and 2019 (.ies).
 #pragma once
+#include <optional>
 #include <string>
 
 #include "host/photometry/intensity_distribution.h"
@@ -15,7 +16,9 @@ struct PhotometricLabels {
 // it. Of the factors of TILT=INCLUDE, for luminaires that are tilted, the first one counts, and a warning
 // tells them.
 IntensityDistribution read_ies(const std::filesystem::path& file);
-IntensityDistribution parse_ies(const std::string& name, std::string bytes);  // `name` is for messages
+// `name` is for messages; `folder`: where a file that TILT names is looked for.
+IntensityDistribution parse_ies(const std::string& name, std::string bytes,
+                                const std::optional<std::filesystem::path>& folder = {});
 
 // LM-63-2019, type C, absolute, made by simulation (file generation type 1.00010); another type is resampled
 // (in_c_planes). Values have nine digits.

@@ -227,8 +227,12 @@ TEST_CASE("photometry: wild forms are read") {
     check_says(folder.complaint(tilted("1 2 90 0 1 1")), {"must rise"});
     check_says(folder.complaint(tilted("4 2 0 90 1 1")), {"geometry"});
     check_says(folder.complaint(tilted("1 2 0 90 1 -1")), {"must be 0 to 10"});
-    CHECK(folder.read(ies("1 -1 1 2 1 1 2 0 0 0 1 1 10 0 90 0 1000 500", "Maker's own", "TILT=lamp.tlt"))
-              .warnings.size() == 1);
+    const std::string beside = ies("1 -1 1 2 1 1 2 0 0 0 1 1 10 0 90 0 1000 500", "Maker's own", "TILT=lamp.tlt");
+    check_says(folder.read(beside).warnings.at(0), {"TILT=lamp.tlt", "no such file"});
+    write_text(folder.folder / "lamp.tlt", "1\n2\n0 90\n0.5, 1\n");
+    CHECK(folder.read(beside).peak() == 500);
+    write_text(folder.folder / "lamp.tlt", "1\n2\n0 90\n0.5 x\n");
+    CHECK_THROWS_WITH_AS(folder.read(beside), doctest::Contains("lamp.tlt: line 4"), Error);
     CHECK(folder.read(ies("1 -1 1 2 1 1 2 0 0 0 1 0 10 0 90 0 1000 -5", "IESNA91")).warnings.size() == 2);
     CHECK(folder.read(ies("1 -1 1 2 1 1 2 0 0 0 1 0 10 0 90 0 1000 -5", "IESNA91"), "LAMP.IES")
               .intensity(0, 90) == 0);
