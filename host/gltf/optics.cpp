@@ -230,7 +230,8 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
                                          : object_description(import, *at, {}),
                             world_from_local};
         read_stokes(object);
-        if (is_light && (*optics)->contains("geometry")) object.shape = uint32_t(import.scene.shapes.size() - 1);
+        if (is_light && (*optics)->contains("geometry"))
+            object.shape = uint32_t(import.scene.shapes.size() - 1);
         if (is_geometry) {
             auto material = index(*at, "material", array_size(import.root, "materials"), "/materials");
             object.material = material ? *material : default_material(import);

@@ -57,7 +57,9 @@ struct RecordResolver {
     std::function<PhotometryRef(const std::filesystem::path& file)> photometry =
         [](const std::filesystem::path&) { return PhotometryRef{}; };
     // Primitive of the shape at the node of the light that is being added.
-    std::function<uint32_t(const std::string& where)> own_shape = [](const std::string&) { return 0xFFFFFFFFu; };
+    std::function<uint32_t(const std::string& where)> own_shape = [](const std::string&) {
+        return 0xFFFFFFFFu;
+    };
     // The rays of a file, for a record whose parameters before that are filled already.
     std::function<RayFileRef(const std::filesystem::path& file, const ClassInfo& info,
                              const std::vector<std::byte>& record, const std::string& where)>

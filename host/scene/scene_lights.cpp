@@ -44,7 +44,10 @@ uint32_t SceneCompiler::own_shape(const std::string& where) {
     const auto found = std::find(placed.begin(), placed.end(), uint32_t(in_.instances.size() + *shape));
     const uint32_t primitive = uint32_t(found - placed.begin());
     if (materials_[memory_.world.primitives[primitive].material].emission.rgb != glm::vec3(0))
-        fail_input("{}/opening: the material of the node's geometry emits light already; allowed: one that emits none", place);
+        fail_input(
+            "{}/opening: the material of the node's geometry emits light already; allowed: one that emits "
+            "none",
+            place);
     opening_ = primitive;
     return primitive;
 }
@@ -271,8 +274,8 @@ void SceneCompiler::measure_lights() {
         sorted_stokes.push_back(light_stokes_[i]);
         out_.features.polarized_lights |= light_stokes_[i].stokes != glm::vec3(0);
         out_.light_names.push_back(light_names_[i]);
-        out_.light_shapes.push_back(
-            primitive == no_record ? "" : out_.placed_names[out_.placed->at(primitive)]);
+        out_.light_shapes.push_back(primitive == no_record ? ""
+                                                           : out_.placed_names[out_.placed->at(primitive)]);
         sorted_bounds.push_back(bounds[i]);
         powers.push_back(bounds[i].power);
         if (is_unmet(bounds[i])) out_.unmet_lights.push_back(light_names_[i]);

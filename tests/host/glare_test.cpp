@@ -14,7 +14,9 @@ namespace {
 const glm::dvec3 sight(0, 0, -1), up(0, 1, 0);
 
 // H, T and R of CIE 117:1995, figure 3: above the line of sight, beside it, along it.
-double index_at(double h, double t) { return position_index(glm::normalize(glm::dvec3(t, h, -1)), sight, up); }
+double index_at(double h, double t) {
+    return position_index(glm::normalize(glm::dvec3(t, h, -1)), sight, up);
+}
 
 // Half a sphere before an eye that looks along -z, in rows of equal solid angle, as a luminance meter has it.
 Meter half_sphere(uint32_t columns, uint32_t rows) {
@@ -52,9 +54,8 @@ TEST_CASE("UGR of a source before an even background, and its interval") {
     const double solid_angle = 2 * glm::pi<double>() * (1 - std::cos(half_angle));
     const double hidden = solid_angle * glm::dot(lamp, sight);  // of the background, times cos
     const double behind = background * (1 - hidden / glm::pi<double>());
-    const double expected =
-        8 * std::log10(0.25 / behind * lamp_luminance * lamp_luminance * solid_angle /
-                       std::pow(position_index(lamp, sight, up), 2));
+    const double expected = 8 * std::log10(0.25 / behind * lamp_luminance * lamp_luminance * solid_angle /
+                                           std::pow(position_index(lamp, sight, up), 2));
     int held = 0;
     std::mt19937 random(7);
     std::normal_distribution<double> normal;

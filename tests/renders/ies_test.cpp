@@ -189,7 +189,8 @@ TEST_CASE("the luminous opening of a photometric lamp is where its light comes f
     check({{"class", "ies"}, {"file", disk}}, 2, 1, 460.0756 / std::numbers::pi);
 }
 
-// The same panel, 1000 cd straight down, as the rectangle of its node: 2000 cd/m² from all sides, and what it reflects.
+// The same panel, 1000 cd straight down, as the rectangle of its node: 2000 cd/m² from all sides, and what it
+// reflects.
 TEST_CASE("a luminous opening that is seen shines as its file says, and all algorithms agree on it") {
     const auto hang = [](SceneBuilder& s, json geometry, double turn) {
         s.placed("light",
@@ -214,7 +215,8 @@ TEST_CASE("a luminous opening that is seen shines as its file says, and all algo
         CHECK(reflected > 0);
         CHECK(reflected < 100);
     }
-    check_against_backward(scene, {.backward = 256, .forward = 64, .bidirectional = 16, .largest_error = 0.03});
+    check_against_backward(scene,
+                           {.backward = 256, .forward = 64, .bidirectional = 16, .largest_error = 0.03});
 
     const auto refused = [&](const json& geometry, const std::string& what) {
         SceneBuilder bad;
