@@ -52,6 +52,7 @@ struct PreviewPicture {
 
 struct PreviewReceiver {
     std::string name, class_name;
+    std::string unit;  // of a meter's pixels; empty: a camera
     float aspect_ratio = 0;
     glm::dmat4 placement{1.0};  // as the scene has it
     CameraLens lens;

@@ -114,6 +114,7 @@ void PreviewWorker::describe_scene() {
         // A camera that the file does not name is as it was at first.
         const bool is_new = status.name.empty();
         status.name = receiver.name, status.class_name = receiver.info->name;
+        status.unit = receiver.info->pixel_unit;
         status.aspect_ratio = receiver.aspect_ratio;
         status.lens = lens_of(receiver);
         if (i < described.size())

@@ -99,6 +99,8 @@ LightProbe::LightProbe(const std::string& class_name, const nlohmann::json& para
     sources_ = test_sources();
     sources_.generated["generated/light_classes.glsl"] =
         class_header(interface_info(Interface::light), {info});
+    sources_.generated["generated/geometry_classes.glsl"] =
+        class_header(interface_info(Interface::geometry), {});
     features_.light_count = 1;
     features_.scene_radius = 1;
 }
@@ -114,6 +116,8 @@ Kernel LightProbe::kernel(const std::string& name, const std::string& text, Buff
     buffers["RayWords"] = &ray_words_;
     buffers["RayColors"] = &ray_colors_;
     buffers["Lights"] = &lights_;
+    // No surfaces, so the opening of no lamp.
+    for (const char* name : {"Primitives", "Transforms", "GeometryRecords"}) buffers[name] = &lights_;
     return Kernel(test_device(), compile_shader(sources, name, options), buffers);
 }
 

@@ -69,9 +69,26 @@ class Bar {
 void draw_color_scale(ViewState& state, double lowest, double highest, const char* unit) {
     Bar bar(state, legend_color, unit);
     const double range = std::log10(highest / lowest);
-    for (int decade = int(std::ceil(std::log10(lowest) - 1e-6));
-         decade <= int(std::floor(std::log10(highest) + 1e-6)); ++decade)
-        bar.label((decade - std::log10(lowest)) / range, fmt::format("{:g}", std::pow(10.0, decade)));
+    for (const double mark : scale_marks(lowest, highest))
+        if (range < 3.5 || std::fabs(std::log10(mark) - std::round(std::log10(mark))) < 1e-6)
+            bar.label(std::log10(mark / lowest) / range, fmt::format("{:g}", mark));
+}
+
+void draw_isolines(ViewState& state) {
+    ImDrawList* list = ImGui::GetBackgroundDrawList();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const auto place = [&](const glm::vec2& p) { return ImVec2(p.x * size.x, p.y * size.y); };
+    for (const double mark : scale_marks(state.view.lowest, state.view.highest)) {
+        const std::vector<LinePiece> pieces = isoline(state.values, mark);
+        for (const LinePiece& piece : pieces)
+            list->AddLine(place(piece.from), place(piece.to), IM_COL32(255, 255, 255, 200),
+                          1.5f * state.content_scale);
+        if (pieces.empty()) continue;
+        const std::string text = fmt::format("{:g}", mark);
+        const ImVec2 at = place(pieces[pieces.size() / 2].from);
+        list->AddText({at.x + 1, at.y + 1}, IM_COL32_BLACK, text.c_str());
+        list->AddText(at, IM_COL32_WHITE, text.c_str());
+    }
 }
 
 void draw_polarization_scale(ViewState& state, Layer layer) {

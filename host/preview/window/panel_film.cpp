@@ -32,9 +32,12 @@ void draw_film_panel(ViewState& state) {
     }
     if (state.view.curve == ToneCurve::false_colors) {
         float ends[2] = {float(state.view.lowest), float(state.view.highest)};
-        if (ImGui::DragFloatRange2("cd/m²", &ends[0], &ends[1], 0.01f, 1e-6f, 1e9f, "%.3g", "%.3g",
-                                   ImGuiSliderFlags_Logarithmic))
-            state.view.lowest = ends[0], state.view.highest = ends[1];
+        const PreviewReceiver* receiver = shown_receiver(state);
+        ImGui::Checkbox("scale fits the picture", &state.fits_scale);
+        if (ImGui::DragFloatRange2(state.shows_meter ? receiver->unit.c_str() : "cd/m²", &ends[0], &ends[1],
+                                   0.01f, 1e-6f, 1e9f, "%.3g", "%.3g", ImGuiSliderFlags_Logarithmic))
+            state.view.lowest = ends[0], state.view.highest = ends[1], state.fits_scale = false;
+        if (state.shows_meter) ImGui::Checkbox("isolines", &state.isolines);
     }
     combo("algorithm", state.request.algorithm, 4, algorithm_name);
     int seed = int(state.request.seed);

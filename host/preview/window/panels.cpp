@@ -101,9 +101,14 @@ void draw_panels(ViewState& state) {
         const ViewSettings shown = shown_settings(state);
         if (state.picture->layer >= Layer::linear)
             draw_polarization_scale(state, state.picture->layer);
-        else if (shown.curve == ToneCurve::false_colors)
+        else if (shown.curve == ToneCurve::false_colors) {
+            const bool is_error = state.picture->layer == Layer::error;
             draw_color_scale(state, shown.lowest, shown.highest,
-                             state.picture->layer == Layer::error ? "error / value" : "cd/m²");
+                             is_error            ? "error / value"
+                             : state.shows_meter ? shown_receiver(state)->unit.c_str()
+                                                 : "cd/m²");
+            if (state.shows_meter && state.isolines && !is_error) draw_isolines(state);
+        }
     }
     draw_messages(state);
     if (!state.status.question.empty()) draw_question(state);

@@ -18,6 +18,7 @@ void draw_help(ViewState& state);
 void draw_messages(ViewState& state);
 void draw_question(ViewState& state);  // that the session asks
 void draw_color_scale(ViewState& state, double lowest, double highest, const char* unit);
+void draw_isolines(ViewState& state);  // at the marks of the scale
 void draw_polarization_scale(ViewState& state, Layer layer);  // of a layer that shows polarization
 
 }  // namespace etendue

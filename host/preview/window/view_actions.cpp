@@ -59,6 +59,21 @@ ViewSettings shown_settings(const ViewState& state) {
     return {0, {}, is_error ? ToneCurve::false_colors : ToneCurve::linear, 0.001, 1};
 }
 
+// Meters are shown in false colours, cameras with a tone curve: each as it was left.
+static void show_meter(ViewState& state, bool is_new) {
+    const PreviewReceiver* receiver = shown_receiver(state);
+    const bool is_meter = receiver && !receiver->unit.empty();
+    const bool turned = std::exchange(state.shows_meter, is_meter) != is_meter;
+    if (turned) std::swap(state.view.curve, state.other_curve), state.fits_scale = true;
+    if (!state.picture || state.picture->layer != Layer::radiance ||
+        state.view.curve != ToneCurve::false_colors)
+        return;
+    if (!is_new && !turned) return;
+    state.values = value_grid(state.picture->radiance, state.picture->width, state.picture->height);
+    if (const auto range = scale_range(state.values); range && state.fits_scale)
+        std::tie(state.view.lowest, state.view.highest) = *range;
+}
+
 void note(ViewState& state, const std::string& notice) {
     state.notice = notice;
     state.notice_at = glfwGetTime();
@@ -279,6 +294,7 @@ bool receive_news(ViewState& state) {
             state.request.receiver = state.status.first_receiver;
         if (!state.moved) reset_camera(state);
     }
+    show_meter(state, state.picture != picture_before);
     if (state.picture && state.picture != picture_before && state.picture->request == state.request)
         if (const auto exposure = state.metering.look(*state.picture, state.view.exposure))
             state.view.exposure = *exposure;

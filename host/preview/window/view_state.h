@@ -5,6 +5,7 @@
 #include <string>
 
 #include "host/preview/camera_control.h"
+#include "host/preview/isolines.h"
 #include "host/preview/metering.h"
 #include "host/preview/pixel_probe.h"
 #include "host/preview/session.h"
@@ -55,6 +56,11 @@ struct ViewState {
     std::shared_ptr<const PreviewPicture> picture;  // null = none yet
     PreviewRequest request;
     ViewSettings view;
+    ToneCurve other_curve = ToneCurve::false_colors;  // of meters while a camera is shown, and the other way round
+    bool shows_meter = false;
+    bool fits_scale = true;  // the false colours' range follows the picture
+    bool isolines = true;    // on what meters see
+    ValueGrid values;        // of the picture, where false colours are shown
     CameraPose pose;
     bool moved = false;      // the camera stands elsewhere than in the scene
     double moved_at = -1e9;  // glfwGetTime
