@@ -1,6 +1,7 @@
 // Every class of scene object: X(tag, Struct, name), one table per interface.
 //
-// The class stands in one file, FOLDER/name.glsl, with its record `Struct` and functions `name_…`. A tag is
+// The class stands in one file, FOLDER/name.glsl, with its record `Struct` and functions `name_…`. Where another interface has
+// a class of that name the row says INTERFACE_name, and so do the functions; file and scenes keep the name. A tag is
 // written into RecordRefs and never renumbered. Tags 128 to 254 are for classes that a scene brings along.
 // The host reads this file as text; shaders see only the classes that a scene uses (see generated headers in
 // host/scene/features.h).
@@ -34,7 +35,8 @@
     X(4, PanoramaCamera, panorama)         \
     X(5, LuminanceMeter, luminance_meter)  \
     X(6, IlluminanceMeter, illuminance)    \
-    X(7, IntensityMeter, intensity)
+    X(7, IntensityMeter, intensity)        \
+    X(8, RayRecorder, receiver_rays)
 
 // folder surfaces/, contract interfaces/surface_optics.glsl
 #define SURFACE_CLASSES(X)                           \

@@ -39,11 +39,15 @@ void keep(const Measurement& measurement, Checkpoint& checkpoint) {
                           {"has_extent", readings.meter.has_extent},
                           {"spectral_bins", readings.spectral_bins},
                           {"forward_paths", readings.forward_paths},
+                          {"most_crossings", readings.rays.most},
+                          {"greatest_key", readings.rays.greatest_key},
+                          {"crossings", readings.rays.crossings.size()},
                           {"probing_paths", readings.probing_paths}});
         add_array(checkpoint, array_name(m, "sums"), readings.sums);
         add_array(checkpoint, array_name(m, "places"), readings.meter.places);
         add_array(checkpoint, array_name(m, "spectra"), readings.spectra);
         add_array(checkpoint, array_name(m, "spectra of rows"), readings.row_spectra);
+        add_array(checkpoint, array_name(m, "crossings"), readings.rays.crossings);
     }
     checkpoint.passes = measurement.passes;
     checkpoint.about["meters"] = meters;
@@ -114,6 +118,9 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
         readings.row_spectra =
             array_of<ExactSum>(checkpoint, path, array_name(m, "spectra of rows"),
                                spectral_sums(meter.rows * replicates, readings.spectral_bins, 1));
+        readings.rays = {json.at("most_crossings"), json.at("greatest_key"), {}};
+        readings.rays.crossings = array_of<RayCrossing>(checkpoint, path, array_name(m, "crossings"),
+                                                        json.at("crossings").get<size_t>());
         readings.forward_paths = json.at("forward_paths");
         readings.probing_paths = json.at("probing_paths");
         readings.passes = checkpoint.passes.count() / replicates;
@@ -130,6 +137,7 @@ void add(Measurement& all, const Measurement& part) {
         merge(std::span(readings.sums), std::span<const ExactSum>(part.meters[m].sums));
         merge(std::span(readings.spectra), std::span<const ExactSum>(part.meters[m].spectra));
         merge(std::span(readings.row_spectra), std::span<const ExactSum>(part.meters[m].row_spectra));
+        readings.rays.add(part.meters[m].rays.crossings, part.meters[m].rays.greatest_key);
         readings.forward_paths += part.meters[m].forward_paths;
         readings.probing_paths = std::max(readings.probing_paths, part.meters[m].probing_paths);
         readings.passes = all.passes.count() / replicates;

@@ -46,10 +46,12 @@ MeasurementRun::MeasurementRun(Device& device, Scene& scene, const std::vector<c
                                const RenderSettings& common)
     : device_(device), scene_(scene), settings_(common) {
     measurement_.power = scene.power;
+    settings_.record_rays = true;
     std::vector<FilmView> views;
     for (const Receiver* receiver : receivers) {
         views.push_back({receiver->ref, receiver->columns, receiver->rows});
         Readings& readings = measurement_.meters.emplace_back();
+        readings.rays = crossing_sample(scene, views.back());
         readings.meter = describe_meter(device, scene, *receiver);
         readings.sums.resize(readings.meter.pixels() * replicates);
         readings.spectral_bins = scene.features.spectral ? common.spectral_bins : 0;
@@ -111,6 +113,12 @@ bool MeasurementRun::add(const PassRange& range, const std::function<bool()>& in
         readings.passes = measurement_.passes.count() / replicates;
         readings.forward_paths += counters.forward_paths / renderers_.size();
     }
+    auto readings = measurement_.meters.begin();
+    for (const auto& renderer : renderers_)
+        for (size_t v = 0; v < renderer->views().size(); ++v, ++readings) {
+            const CrossingSample rays = renderer->take_crossings(v);
+            readings->rays.add(rays.crossings, rays.greatest_key);
+        }
     measurement_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return true;
 }

@@ -46,6 +46,7 @@ struct Readings {
     // Where paths carry wavelengths and bins are asked for, else 0; see render/spectral_film.h.
     uint32_t spectral_bins = 0;
     std::vector<ExactSum> spectra;      // pixel after pixel, of all replicates together
+    CrossingSample rays;  // of a receiver that records them: unscaled
     std::vector<ExactSum> row_spectra;  // row after row, replicate after replicate: its pixels' sum
     uint64_t passes = 0;                // of each replicate
     uint64_t forward_paths = 0;         // that could have brought light in its passes

@@ -9,6 +9,7 @@
 #include "host/gnuplot.h"
 #include "host/image/atomic_file.h"
 #include "host/image/exr.h"
+#include "host/measure/ray_export.h"
 #include "host/photometry/ies_file.h"
 #include "host/photometry/ldt_file.h"
 #include "host/spectra/color.h"
@@ -132,6 +133,11 @@ std::vector<std::string> write_report(const ReportOptions& options, const Measur
             outputs.write([&] { write_ies(stem.string() + ".ies", d, labels); });
             outputs.write([&] { write_ldt(stem.string() + ".ldt", d, labels); });
         }
+        if (const auto rays = recorded_rays(readings))
+            outputs.write([&] { write_tm25(stem.string() + ".tm25ray", *rays); });
+        else if (readings.rays.most > 0)
+            notes.push_back(fmt::format("{}: no rays have been recorded: forward rays alone are",
+                                        readings.meter.name));
         for (const char* plot : {".map.png", ".sections.svg", ".polar.svg"}) fs::remove(stem.string() + plot);
         if (!is_dark(readings)) script += plots_of(readings, stem);
     }

@@ -3,6 +3,7 @@
 //   figures.csv              every figure of every meter, with its interval
 //   METER.exr, METER.csv     each pixel and its standard error
 //   METER.ies, METER.ldt     of intensities, as lamps are published (LM-63-2019, EULUMDAT)
+//   METER.tm25ray            the rays that a receiver has recorded (TM-25)
 //   METER.map.png            in false colours with isolines
 //   METER.sections.svg       through the middle, with the 95 % interval; of intensities METER.polar.svg
 #pragma once

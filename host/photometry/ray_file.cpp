@@ -87,6 +87,14 @@ void RayCollector::add_wavelength(double nm) {
     file_.wavelengths.push_back(float(nm));
 }
 
+void RayCollector::add_tristimulus(const glm::vec2& xz) {
+    for (int i = 0; i < 2; ++i)
+        if (!(std::abs(xz[i]) <= most_flux))
+            fail(file_.rays.size(), "has the tristimulus value {:.6g}; must be a number in [-1e15, 1e15]",
+                 xz[i]);
+    file_.tristimulus.push_back(xz);
+}
+
 void RayCollector::finish() {
     if (!(file_.flux() > 0)) fail_input("{}: none of its {} rays carries any flux", name_, file_.rays.size());
     if (turned_ > 0)

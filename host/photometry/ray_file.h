@@ -38,6 +38,7 @@ struct RayFile {
     Unit unit = Unit::watt;             // of SourceRay::flux
     std::vector<SourceRay> rays;        // at least one, not all of them dark
     std::vector<float> lumens;          // of each ray, beside its watts; empty = not told
+    std::vector<glm::vec2> tristimulus; // X and Z of each ray, beside its lumens, which are Y; or empty
     std::vector<float> wavelengths;     // nm, of each ray
     std::vector<RaySpectrum> spectra;   // tables
     std::vector<uint32_t> spectrum_of;  // of each ray, an index into `spectra`; empty = all have the first
@@ -59,7 +60,7 @@ constexpr float farthest_ray = 1e9f;  // mm, of a start from the origin, along e
 RayFile read_ray_file(const std::filesystem::path& file);
 
 // TM-25 of 2013: positions, directions, watts or lumens or both, and where there are watts wavelengths (kind
-// 2) or tables (kinds 3, 4). What is written reads back to the same. `date` as ISO 8601 has it, at most 27
+// 2) or tables (kinds 3, 4), where there are lumens alone tristimulus values. What is written reads back to the same. `date` as ISO 8601 has it, at most 27
 // characters.
 void write_tm25(const std::filesystem::path& file, const RayFile& rays, const std::string& date = "");
 

@@ -51,6 +51,7 @@ class RayCollector {
     void add(std::span<const float> position, std::span<const float> direction, float flux);
     // Of the ray that was added last.
     void add_lumens(float lumens);
+    void add_tristimulus(const glm::vec2& xz);
     void add_wavelength(double nm);
     // Fails where all rays are dark; says what was corrected.
     void finish();

@@ -62,6 +62,32 @@ class Bands {
     std::map<int, uint32_t> known_;
 };
 
+// Colours of rays that have tristimulus values: the mean of each of those whose chromaticities are near each
+// other. Returns which ray has which.
+std::vector<uint32_t> collect_colors(const RayFile& file, std::vector<SpectralValue>& colors) {
+    constexpr double cells = 100;  // along each of x and y
+    std::map<std::pair<int, int>, uint32_t> known;
+    std::vector<glm::dvec3> sums;
+    std::vector<uint32_t> color_of;
+    for (size_t i = 0; i < file.rays.size(); ++i) {
+        const double y = file.rays[i].flux;
+        const glm::dvec3 xyz(file.tristimulus[i].x, y, file.tristimulus[i].y);
+        const double sum = xyz.x + xyz.y + xyz.z;
+        const glm::dvec3 part = y > 0 && sum > 0 ? xyz / sum : glm::dvec3(1.0 / 3);
+        const std::pair cell(int(std::lround(cells * part.x)), int(std::lround(cells * part.y)));
+        const auto [place, is_new] = known.try_emplace(cell, uint32_t(sums.size()));
+        if (is_new) sums.emplace_back(0);
+        sums[place->second] += xyz;
+        color_of.push_back(place->second);
+    }
+    for (const glm::dvec3& xyz : sums) {
+        const glm::dvec3 rgb = glm::max(rgb_of_xyz(xyz), 0.0);
+        const double y = luminance(rgb);
+        colors.push_back({y > 0 ? glm::vec3(rgb / y) : glm::vec3(1), {}});
+    }
+    return color_of;
+}
+
 double weight_at(const RaySpectrum& s, double nm) {
     const auto next = size_t(std::upper_bound(s.nm.begin(), s.nm.end(), float(nm)) - s.nm.begin());
     if (next == 0 || (next == s.nm.size() && nm > s.nm.back())) return 0;
@@ -158,6 +184,7 @@ RaySet append_ray_set(std::vector<uint32_t>& words, const RayFile& file) {
             set.colors.push_back(lumens_of.back() > 0 ? of_luminance(shape, lumens_of.back())
                                                       : SpectralValue{});
         }
+    if (!file.tristimulus.empty()) color_of = collect_colors(file, set.colors);
     Bands bands(set.colors);
     double sum = 0, lumens = 0, dark = 0;
     size_t dark_rays = 0;
@@ -236,6 +263,7 @@ RaySet append_ray_set(std::vector<uint32_t>& words, const RayFile& file) {
     const std::string spectra = has_wavelengths ? fmt::format(", {} wavelengths", set.colors.size())
                                 : file.spectra.size() == 1 ? ", one spectrum"
                                 : has_tables               ? fmt::format(", {} spectra", file.spectra.size())
+                                : set.colors.size() > 1    ? fmt::format(", {} colours", set.colors.size())
                                                            : "";
     set.summary = fmt::format("{}, {} rays{}{}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) mm",
                               file.format, n, carries, spectra, 1000 * lo.x, 1000 * lo.y, 1000 * lo.z,

@@ -150,6 +150,7 @@ void read_rays(RayReader& in, const Layout& layout, uint64_t start, RayFile& fil
     file.unit = has[watts] ? RayFile::Unit::watt : RayFile::Unit::lumen;
     if (has[watts] && has[lumens]) file.lumens.reserve(count);
     if (has[wavelength]) file.wavelengths.reserve(count);
+    if (has[tristimulus]) file.tristimulus.reserve(count);
     if (has[spectrum_index]) file.spectrum_of.reserve(count);
     if (has[stokes]) file.polarization.reserve(count);
     in.for_each_ray(start, count, uint32_t(layout.columns()), [&](std::span<const float> r) {
@@ -165,7 +166,10 @@ void read_rays(RayReader& in, const Layout& layout, uint64_t start, RayFile& fil
             file.polarization.push_back({{r[at], r[at + 1], r[at + 2]}, {r[at + 3], r[at + 4], r[at + 5]}});
             at += 6;
         }
-        if (has[tristimulus]) at += 2;
+        if (has[tristimulus]) {
+            rays.add_tristimulus({r[at], r[at + 1]});
+            at += 2;
+        }
         if (has[spectrum_index]) {
             const float index = next();
             if (!(index >= 1 && index <= float(layout.tables) && index == std::floor(index)))
@@ -203,8 +207,6 @@ RayFile read_tm25(RayReader& in) {
             in.fail(64, "the wavelength of all rays is {:.6g} nm; must be a number in [1, 1e7]", nm);
         file.wavelengths.assign(file.rays.size(), nm);
     }
-    if (layout.has[tristimulus])
-        file.warnings.emplace_back("the tristimulus values of its rays are not used");
     return file;
 }
 
@@ -228,6 +230,7 @@ void write_tm25(const std::filesystem::path& path, const RayFile& file, const st
     put(20, uint64_t(file.rays.size()));
     std::memcpy(head.data() + 28, date.data(), std::min<size_t>(date.size(), 27));
     const bool has_wavelengths = in_watts && !file.wavelengths.empty();
+    const bool has_tristimulus = !in_watts && !file.tristimulus.empty();
     put(60, int32_t(has_index         ? table_a_ray
                     : has_tables      ? one_table
                     : has_wavelengths ? wavelength_a_ray
@@ -243,7 +246,7 @@ void write_tm25(const std::filesystem::path& path, const RayFile& file, const st
                                     has_wavelengths,
                                     !in_watts || !file.lumens.empty(),
                                     in_watts && !file.polarization.empty(),
-                                    false,
+                                    has_tristimulus,
                                     has_index};
     for (int i = 0; i < item_count; ++i) put(flags_at + 4 * uint64_t(i), int32_t(flags[i]));
     for (size_t i = 0; i < file.texts.size(); ++i) {
@@ -274,6 +277,7 @@ void write_tm25(const std::filesystem::path& path, const RayFile& file, const st
             const RayPolarization& p = file.polarization[i];
             body.insert(body.end(), {p.stokes.x, p.stokes.y, p.stokes.z, p.axis.x, p.axis.y, p.axis.z});
         }
+        if (has_tristimulus) body.insert(body.end(), {file.tristimulus[i].x, file.tristimulus[i].y});
         if (has_index) body.push_back(float(file.spectrum_of[i] + 1));
     }
     write_atomically(path, {std::span<const std::byte>(head), std::as_bytes(std::span(body))});

@@ -96,6 +96,8 @@ std::optional<AlgorithmChoice> choose_without_pilot(Device& device, Scene& scene
         for (const FilmView& view : views)
             if (receiver.ref == view.receiver && receiver.info->is_far)
                 return choose_both_ways(views, "from far away backward rays seldom hit a lamp");
+            else if (receiver.ref == view.receiver && receiver.info->records_rays)
+                return choose_both_ways(views, "forward rays alone are recorded");
     const bool narrow = find_narrow_materials(device, scene);
     const char* const matte = "no surface is smooth or nearly so";
     if (!narrow && !scene.features.scattering) return backward(matte);

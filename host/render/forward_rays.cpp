@@ -50,6 +50,7 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
       pass_(device, sizeof(ForwardPass), "ForwardPassTable"),
       splats_(device, splat_bytes(), "Splats") {
     splats_.fill(0);
+    if (techniques.ray_record) ray_record_.emplace(device, scene, all_views(settings), count_);
     if (techniques.connect || techniques.merge) {
         const VertexMap::Shaders shaders = {[&](const std::string& file, const BufferTable& table) {
                                                 return make_kernel(device, scene, file, table);
@@ -87,6 +88,7 @@ uint64_t ForwardRays::splat_bytes() const {
 BufferTable ForwardRays::buffers() const {
     BufferTable table = {{"ForwardPassTable", &pass_}, {"Splats", &splats_}};
     if (vertices_) table.merge(vertices_->buffers());
+    if (ray_record_) table.merge(ray_record_->buffers());
     table["PathEnds"] = &path_ends_;
     return table;
 }
@@ -94,6 +96,7 @@ BufferTable ForwardRays::buffers() const {
 void ForwardRays::trace(CommandList& commands, uint64_t pass, uint32_t seed, KernelTimings& timings) {
     count_ = fitting_.value_or(all_);
     trace_fitting(commands, pass, seed, timings);
+    if (ray_record_) ray_record_->end_pass(pass, seed);
     if (pass == 0) fitting_ = count_;
     if (vertices_ && techniques_.merge && expected_vertices_ > 0)
         vertices_->build(commands, expected_vertices_);
@@ -116,8 +119,13 @@ void ForwardRays::trace_fitting(CommandList& commands, uint64_t pass, uint32_t s
         const ForwardPass values = describe_pass(scene_, settings_, pass, count_, seed);
         pass_.write(&values, sizeof values);
         if (vertices_) vertices_->clear(commands);
+        if (ray_record_) ray_record_->begin_pass();
         trace_paths(commands, timings);
         paths_ += count_;
+        if (ray_record_ && !ray_record_->fits()) {
+            splats_.fill(0, splat_bytes());
+            continue;
+        }
         if (!vertices_) return;
         const VertexMap::Counts counts = vertices_->counts();
         expected_vertices_ = counts.stored;
@@ -144,6 +152,10 @@ void ForwardRays::restart(const RenderSettings& settings) {
     all_ = forward_paths_a_pass(settings_);
     fitting_.reset();
     splats_.fill(0, splat_bytes());
+}
+
+CrossingSample ForwardRays::take_crossings(size_t view) {
+    return ray_record_ ? ray_record_->take(view) : CrossingSample{};
 }
 
 void ForwardRays::warm_up(CommandList& commands) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "host/render/ray_record.h"
 #include "host/render/renderer.h"
 #include "host/render/techniques.h"
 #include "host/render/vertex_map.h"
@@ -48,6 +49,8 @@ class ForwardRays {
     uint64_t take_splits() { return std::exchange(splits_, 0); }
     uint32_t paths_a_pass() const { return fitting_.value_or(all_); }
     void restart(const RenderSettings& settings);  // with other views
+    // Of a view whose receiver records rays, where settings.record_rays asks for them: since the last call.
+    CrossingSample take_crossings(size_t view);
 
   private:
     uint64_t splat_bytes() const;  // of the view at hand
@@ -61,6 +64,7 @@ class ForwardRays {
     uint64_t paths_ = 0, splits_ = 0;
     uint32_t expected_vertices_ = 0;
     Buffer pass_, splats_, path_ends_;
+    std::optional<RayRecord> ray_record_;
     std::optional<VertexMap> vertices_;  // where vertices are connected or merged
     Kernel trace_forward_paths_;         // whole paths in one kernel, or
     uint32_t groups_ = 1;

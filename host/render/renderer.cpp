@@ -169,6 +169,10 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     techniques.connect &= settings_.connect;
     techniques.beams &= settings_.beams;
     techniques.several_views = views_.count() > 1;
+    techniques.ray_record =
+        settings_.record_rays && techniques.forward &&
+        std::any_of(views_.all().begin(), views_.all().end(),
+                    [&](const FilmView& view) { return records_rays(scene, view); });
     film_ = std::make_unique<Film>(
         device, scene, FilmShape{uint32_t(most_pixels_), 1, techniques.merge, settings_.stokes}, timings_);
     if (!settings.restarts_first) film_->clear();
@@ -383,6 +387,10 @@ void Renderer::add_spectra(Image& image, size_t view) const {
     if (!spectral_film_) return;
     const std::vector<ExactSum> sums = spectral_film_->read();
     etendue::add_spectra(image, part(sums, view), settings_.spectral_bins, film_->shape().layers(), passes());
+}
+
+CrossingSample Renderer::take_crossings(size_t view) {
+    return forward_ ? forward_->take_crossings(view) : CrossingSample{};
 }
 
 void Renderer::restore(const FilmState& state) {

@@ -18,6 +18,7 @@
 #include "host/image/image.h"
 #include "host/render/film.h"
 #include "host/render/modes.h"
+#include "host/render/ray_record.h"
 #include "host/render/spectral_film.h"
 #include "host/render/spectral_passes.h"
 #include "host/render/start_media.h"
@@ -54,6 +55,7 @@ struct RenderSettings {
     float merge_radius = 1;                       // of the first pass, in widths of a pixel; > 0
     bool restarts_first = false;                  // before any pass: the film is not cleared until then
     uint32_t spectral_bins = 0;  // of a spectral image, where paths carry wavelengths; 0 = none
+    bool record_rays = false;    // that cross receivers which record them, where there are forward rays
     bool stokes = false;         // S1 to S3, too, where paths carry polarization
 };
 
@@ -142,6 +144,8 @@ class Renderer {
     RelativeError relative_error() const;  // of the view where it is greatest
     // Adds albedo.RGB, normal.XYZ and depth.Z of what the pixels see, by `count` primary rays a pixel.
     void add_aovs(Image& image, uint32_t count, size_t view = 0);
+
+    CrossingSample take_crossings(size_t view);  // since the last call, of all films since then
 
     FilmState state() const;
     void restore(const FilmState& state);  // of a film of the same size

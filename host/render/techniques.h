@@ -16,6 +16,7 @@ struct Techniques {
     bool beams = false;          // … in media that are the same everywhere along rays
     bool stokes = false;         // the film has layers for S1 to S3 (shaders/features/stokes_images.glsl)
     bool several_views = false;  // forward rays serve several receivers (host/render/views.h)
+    bool ray_record = false;     // of what crosses some of them (host/render/ray_record.h)
     std::string backward_defines() const, forward_defines() const;
 };
 

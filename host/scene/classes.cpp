@@ -59,12 +59,13 @@ HeadComment head_comment(const std::string& text) {
 void read_class(const std::string& text, ClassInfo& info) {
     HeadComment head = head_comment(text);
     info.summary = std::move(head.summary), info.example = std::move(head.example);
-    info.says_polarization = text.find(info.name + "_mueller(") != std::string::npos;
-    info.says_coverage = text.find(info.name + "_coverage(") != std::string::npos;
-    info.is_crystal = text.find(info.name + "_crystal(") != std::string::npos;
-    info.has_aperture = text.find("#define " + info.name + "_HAS_APERTURE") != std::string::npos;
-    info.has_receptor = text.find(info.name + "_receptor(") != std::string::npos;
-    info.is_far = text.find(info.name + "_far(") != std::string::npos;
+    info.says_polarization = text.find(info.prefix + "_mueller(") != std::string::npos;
+    info.says_coverage = text.find(info.prefix + "_coverage(") != std::string::npos;
+    info.is_crystal = text.find(info.prefix + "_crystal(") != std::string::npos;
+    info.has_aperture = text.find("#define " + info.prefix + "_HAS_APERTURE") != std::string::npos;
+    info.records_rays = text.find("#define " + info.prefix + "_RECORDS_RAYS") != std::string::npos;
+    info.has_receptor = text.find(info.prefix + "_receptor(") != std::string::npos;
+    info.is_far = text.find(info.prefix + "_far(") != std::string::npos;
     std::smatch unit;
     if (std::regex_search(info.summary, unit, std::regex(R"(A pixel: (\S+)\.)"))) info.pixel_unit = unit[1];
     info.has_general_mueller = text.find("is_general") != std::string::npos;
@@ -199,7 +200,9 @@ ClassRegistry::ClassRegistry(ShaderSources sources, std::filesystem::path cache_
             info.interface = interface.interface;
             info.tag = uint32_t(std::stoul((*i)[1]));
             info.record = (*i)[2];
-            info.name = (*i)[3];
+            info.name = info.prefix = (*i)[3];
+            if (const std::string common = std::string(interface.name) + "_"; info.name.rfind(common, 0) == 0)
+                info.name.erase(0, common.size());
             info.file = fmt::format("{}/{}.glsl", interface.folder, info.name);
             if (auto source = sources_.find(info.file)) read_class(*source, info);
             classes.push_back(std::move(info));
@@ -210,7 +213,7 @@ ClassRegistry::ClassRegistry(ShaderSources sources, std::filesystem::path cache_
 void ClassRegistry::add_class_file(Interface interface, const std::filesystem::path& file) {
     ClassInfo info;
     info.interface = interface;
-    info.name = file.stem().string();
+    info.name = info.prefix = file.stem().string();
     info.record = camel_case(info.name);
     info.file = file.string();
     auto& classes = classes_[interface];
@@ -300,7 +303,7 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
     // COVERED_SURFACE_CLASSES are those of which a part may not be there.
     std::string rows, one, covered;
     for (const ClassInfo* info : classes) {
-        const std::string row = fmt::format(" X({}u, {}, {})", info->tag, info->record, info->name);
+        const std::string row = fmt::format(" X({}u, {}, {})", info->tag, info->record, info->prefix);
         one += fmt::format("#if ONLY_SURFACE_CLASS == {}\n#define {}(X){}\n#endif\n", info->tag,
                            interface.table, row);
         rows += row;
@@ -316,24 +319,25 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
     for (const ClassInfo* info : classes) {
         const auto known = constants.find(info->name);
         if (known != constants.end()) text += known->second.macros;
-        text += fmt::format("#define TAG_{} {}\n#include \"{}\"\n", info->name, info->tag, info->file);
+        text += fmt::format("#define TAG_{} {}\n#include \"{}\"\n", info->prefix, info->tag, info->file);
         if (interface.interface == Interface::surface && !info->says_polarization)
             text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n",
-                                info->name);
+                                info->prefix);
         if (interface.interface == Interface::receiver) {
-            text += fmt::format("#define {0}_HAS_RECEPTOR {1:d}\n#define {0}_IS_FAR {2:d}\n", info->name,
+            text += fmt::format("#define {0}_HAS_RECEPTOR {1:d}\n#define {0}_IS_FAR {2:d}\n", info->prefix,
                                 info->has_receptor, info->is_far);
+            if (!info->records_rays) text += fmt::format("#define {}_RECORDS_RAYS 0\n", info->prefix);
             if (!info->has_receptor)
                 text +=
-                    fmt::format("#define {}_receptor(r, origin, direction) no_receptor_hit()\n", info->name);
+                    fmt::format("#define {}_receptor(r, origin, direction) no_receptor_hit()\n", info->prefix);
             if (!info->is_far)
                 text += fmt::format("#define {}_far(r, direction, film_aspect) no_receiver_sample()\n",
-                                    info->name);
+                                    info->prefix);
         }
         if (interface.interface == Interface::medium && !info->is_crystal)
-            text += fmt::format("#define {}_crystal(r) isotropic_medium(1.0)\n", info->name);
+            text += fmt::format("#define {}_crystal(r) isotropic_medium(1.0)\n", info->prefix);
         if (interface.interface == Interface::phase && !info->says_polarization)
-            text += fmt::format("#define {}_mueller(r, cosine) depolarizing()\n", info->name);
+            text += fmt::format("#define {}_mueller(r, cosine) depolarizing()\n", info->prefix);
         // All classes of an interface are views of one buffer, on one binding.
         const MemberLayout* last = info->parameters.empty() ? nullptr : &info->parameters.back().member;
         const uint32_t padding = last ? (info->stride - last->offset - last->size) / 4 : 0;
@@ -341,10 +345,10 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
                             padding ? fmt::format(" uint padding[{}];", padding) : "");
         text += fmt::format(
             "layout(scalar, set = 0, binding = {}) readonly buffer {}__{} {{ {}Row {}_records[]; }};\n",
-            int(interface.interface), interface.buffer, info->name, info->record, info->name);
+            int(interface.interface), interface.buffer, info->prefix, info->record, info->prefix);
         text +=
             fmt::format("{0} {1}_record(uint index) {{ {0} r = {1}_records[index].record; {2}return r; }}\n",
-                        info->record, info->name, known == constants.end() ? "" : known->second.statements);
+                        info->record, info->prefix, known == constants.end() ? "" : known->second.statements);
     }
     return text;
 }

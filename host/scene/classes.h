@@ -53,13 +53,14 @@ struct ClassInfo {
     Interface interface = Interface::surface;
     uint32_t tag = 0;
     std::string record, name, file;  // struct, class, GLSL file
+    std::string prefix;              // of its functions: the name, or "INTERFACE_name" (shaders/registry.h)
     std::string summary;             // the comment at the head of the file, without the example
     std::string example;             // as it stands there, JSON; may be empty
     bool says_polarization = false;  // NAME_mueller is there
     bool says_coverage = false;      // NAME_coverage is there
     bool is_crystal = false;         // NAME_crystal is there: it refracts doubly
     bool has_aperture = false, has_receptor = false,
-         is_far = false;               // of receivers (interfaces/receiver.glsl)
+         is_far = false, records_rays = false;  // of receivers (interfaces/receiver.glsl)
     std::string pixel_unit;            // of receivers that measure; empty = a camera
     bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization
     bool has_body_mueller = false;     // light leaves its body (shaders/features/body_mueller.glsl)

@@ -267,7 +267,7 @@ ClassConstants RecordBuffer::constant_members(const ClassInfo& info,
             constants.statements += fmt::format("r.{} = {}({}u); ", name, type, *bits);
         } else if (type == "float" && (*bits == 0 || *bits == one)) {
             constants.statements += fmt::format("r.{} = {}; ", name, *bits ? "1.0" : "0.0");
-            if (*bits == 0) constants.macros += fmt::format("#define ABSENT_{}_{}\n", info.name, name);
+            if (*bits == 0) constants.macros += fmt::format("#define ABSENT_{}_{}\n", info.prefix, name);
         } else if (std::all_of(bits, bits + length, [](uint32_t b) { return b == 0 || b == one; })) {
             std::string values;
             for (int i = 0; i < length; ++i) values += bits[i] ? ", 1.0" : ", 0.0";

@@ -90,6 +90,7 @@ bool is_grey(const glm::dvec3& rgb) { return rgb.x == rgb.y && rgb.y == rgb.z; }
 glm::dvec3 xyz_of_radiance(const SpectralTable& radiance) { return weighted_sum(radiance, observer().xyz); }
 glm::dvec3 rgb_of_radiance(const SpectralTable& radiance) { return weighted_sum(radiance, observer().rgb); }
 glm::dvec3 xyz_of_rgb(const glm::dvec3& rgb) { return observer().xyz_from_rgb * rgb; }
+glm::dvec3 rgb_of_xyz(const glm::dvec3& xyz) { return glm::inverse(observer().xyz_from_rgb) * xyz; }
 
 double luminance(const glm::dvec3& rgb) { return glm::dot(rgb, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 const std::array<glm::dvec3, spectrum_samples>& rgb_weights() { return observer().rgb; }

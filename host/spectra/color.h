@@ -13,6 +13,7 @@ glm::dvec3 xyz_of_radiance(const SpectralTable& radiance);
 // The same as the renderer's unit of colour, in which white of luminance 1 cd/m² is (1, 1, 1).
 glm::dvec3 rgb_of_radiance(const SpectralTable& radiance);
 glm::dvec3 xyz_of_rgb(const glm::dvec3& rgb);
+glm::dvec3 rgb_of_xyz(const glm::dvec3& xyz);
 // CIE luminance Y of linear Rec.709.
 double luminance(const glm::dvec3& rgb);
 // What a wavelength contributes to that: rgb_of_radiance is the sum over nanometres of radiance times this.

@@ -8,6 +8,7 @@
 //   FORWARD_ONLY      what forward rays can bring is brought by nothing else
 //   HAS_SPLATS        forward rays bring light to pixels
 //   SEVERAL_VIEWS     several receivers share the forward rays (features/views.glsl)
+//   RECORD_RAYS       rays are written down where they cross receivers (features/ray_record.glsl)
 //   STOKES_IMAGE      the film has layers for S1 to S3 (features/stokes_images.glsl)
 #ifndef FORWARD
 #define FORWARD 0
@@ -29,6 +30,9 @@
 #endif
 #ifndef SEVERAL_VIEWS
 #define SEVERAL_VIEWS 0
+#endif
+#ifndef RECORD_RAYS
+#define RECORD_RAYS 0
 #endif
 #ifndef STOKES_IMAGE
 #define STOKES_IMAGE 0

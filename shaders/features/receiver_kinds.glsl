@@ -1,4 +1,4 @@
-// What only some classes of receivers have: receptors, and a place far away.
+// What only some classes of receivers have: receptors, of which some record rays, and a place far away.
 #include "features/defaults.glsl"
 #include "interfaces/receiver.glsl"
 
@@ -17,6 +17,16 @@ ReceptorHit receiver_receptor(uint ref, vec3 origin, vec3 direction) {
     ReceptorHit result = no_receptor_hit();
     switch (record_tag(ref)) {
 #define CASE(tag, Struct, name) case tag: result = name##_receptor(name##_record(record_index(ref)), origin, direction); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+bool records_rays(uint ref) {
+    bool result = false;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_RECORDS_RAYS == 1; break;
         RECEIVER_CLASSES(CASE)
 #undef CASE
     }

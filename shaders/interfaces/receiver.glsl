@@ -17,6 +17,8 @@
 //   ReceiverSample NAME_far(R r, vec3 direction, float film_aspect)   what light that leaves the scene along `direction` adds: the flux F
 //                               adds F * density * weight to the mean over the film; pdf is that of `connect` choosing it, 1/sr
 //
+// With `#define NAME_RECORDS_RAYS 1` what passes the receptor is written down (features/ray_record.glsl).
+//
 // A pixel of a camera is a radiance; that of a meter, which measures and shows no picture, what the words "A pixel: UNIT." of the
 // class's comment say.
 //

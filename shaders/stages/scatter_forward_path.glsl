@@ -1,6 +1,7 @@
 // One event of a forward path: what the ray meets is crossed, connected to the receiver, stored, and scattered from.
 #include "features/far_receivers.glsl"
 #include "features/meeting.glsl"
+#include "features/ray_record.glsl"
 #include "lib/events.glsl"
 #include "stages/arrive.glsl"
 
@@ -36,6 +37,7 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
     uint v = NO_RECORD;
     if (!is_delta) v = a.caught ? receptor_ahead(path) : choose_view(path.random);
     View view = views[v == NO_RECORD ? 0u : v];
+    if (a.caught) record_crossing(path, p.position, view);
     if (v != NO_RECORD) r = receiver_connect(view.receiver, p.position, sample_2d(path.random), film_aspect(view));
     vec3 wi = r.direction * s.frame;
     SurfaceEvent event = scattering_event(s, wi, wi, 1u, sample_3d(path.random));

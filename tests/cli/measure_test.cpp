@@ -3,6 +3,7 @@
 
 #include "host/image/exr.h"
 #include "host/photometry/intensity_distribution.h"
+#include "host/photometry/ray_file.h"
 #include "host/render/spectral_film.h"
 #include "host/spectra/color.h"
 #include "host/spectra/library.h"
@@ -215,4 +216,31 @@ TEST_CASE("one run renders several receivers, and its parts merge to the same im
     REQUIRE(program.run({"render", "s.gltf", "--receiver", "all", "--passes", "1", "-o", "all.exr"}).code ==
             0);
     CHECK(std::filesystem::exists(program.folder / "all.away.exr"));
+}
+
+TEST_CASE("recorded rays are written, and parts merge to those of one run") {
+    Executable program;
+    std::string scene = scene_text;
+    const std::string gonio = R"({"class": "intensity", "resolution": [8, 7]})";
+    scene.replace(scene.find(gonio), gonio.size(), R"({"class": "rays", "radius": 4, "limit": 2000})");
+    write_text(program.folder / "s.gltf", scene);
+    const auto measure = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"measure", "s.gltf", "-q"});
+        return program.run(more).code;
+    };
+    REQUIRE(measure({"--passes", "32", "-o", "out"}) == 0);
+    const RayFile file = read_ray_file(program.folder / "out/gonio.tm25ray");
+    CHECK(file.rays.size() == 2000);
+    CHECK(file.flux() == doctest::Approx(4000 * 3.14159265).epsilon(0.02));
+    CHECK_FALSE(std::filesystem::exists(program.folder / "out/plane.tm25ray"));
+    REQUIRE(measure({"--passes", "0:16", "--checkpoint", "a.etd"}) == 0);
+    REQUIRE(measure({"--passes", "16:32", "--checkpoint", "b.etd"}) == 0);
+    REQUIRE(program.run({"merge", "b.etd", "a.etd", "-o", "merged"}).code == 0);
+    CHECK(text_of(program, "merged/gonio.tm25ray") == text_of(program, "out/gonio.tm25ray"));
+    CHECK(text_of(program, "merged/figures.csv") == text_of(program, "out/figures.csv"));
+
+    const Run backward = program.run(
+        {"measure", "s.gltf", "-o", "dark", "--passes", "16", "--algorithm", "backward"});
+    CHECK(backward.code == 0);
+    CHECK(backward.err.find("gonio: no rays have been recorded") != std::string::npos);
 }

@@ -81,6 +81,7 @@ std::vector<Configuration> configurations(const std::string& name) {
     if (name == "panorama") parameters = json::object();
     if (name == "luminance_meter") parameters = {{"angle", 0.9}};
     if (name == "illuminance") parameters = {{"size", {1.2, 0.8}}};
+    if (name == "rays") parameters = {{"size", {1.2, 0.8}}};
     if (name == "intensity") parameters = {{"resolution", {16, 8}}};
     if (parameters.is_null()) return {};
     std::mt19937 random(3);
@@ -106,13 +107,14 @@ std::vector<Configuration> configurations(const std::string& name) {
         {"mirrored and stretched", parameters, node(scale(0.5, 2, -1.5))},
         {"sheared", parameters, node(glm::dmat3({1, 0.3, -0.2}, {0.4, 0.9, 0.1}, {-0.3, 0.2, 1.2}))},
     };
+    if (name == "rays") result.push_back({"sphere", {{"radius", 0.7}}, node(scale(1.2, 1.2, 1.2))});
     if (name == "perspective") {
         result.push_back({"wide", {{"yfov", 2.6}}, node(glm::dmat3(1))});
         result.push_back({"small angle", {{"yfov", 2e-3}}, node(glm::dmat3(1)), 1.5, 1e-3});
         result.push_back({"made small", parameters, node(scale(1e-12, 1e-12, 1e-12))});
     }
     for (Configuration& c : result) {
-        c.sees_all = name == "panorama" || name == "intensity";
+        c.sees_all = name == "panorama" || name == "intensity" || c.label == "sphere";
         c.is_sharp = name == "perspective" || name == "orthographic";
         c.plane_film = !c.sees_all && name != "luminance_meter";
     }
@@ -288,12 +290,15 @@ TEST_CASE("receiver: the density is that of the rays which leave the film") {
                 const Emitted& r = middle[i * n + j];
                 const auto origin = [&](uint32_t k) { return glm::dvec3(at[k].origin); };
                 const auto direction = [&](uint32_t k) { return glm::dvec3(at[k].direction); };
+                const double radius = 0.5 * glm::length(origin(0) - origin((n + 1) * (n + 1) - 1));
+                const double on_sphere = solid_angle(direction(a), direction(b), direction(e)) +
+                                         solid_angle(direction(a), direction(e), direction(d));
                 const double size =
-                    r.is_parallel && !probe.is_far
+                    c.label == "sphere" ? radius * radius * on_sphere
+                    : r.is_parallel && !probe.is_far
                         ? std::abs(glm::dot(glm::cross(origin(b) - origin(a), origin(d) - origin(a)),
                                             glm::dvec3(r.direction)))
-                        : solid_angle(direction(a), direction(b), direction(e)) +
-                              solid_angle(direction(a), direction(e), direction(d));
+                        : on_sphere;
                 double share = r.density * size;
                 if (probe.is_far)
                     share *= r.weight;  // over all places

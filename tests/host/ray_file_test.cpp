@@ -311,6 +311,7 @@ TEST_CASE("ray files: what is written as TM-25 reads back to the same") {
         CHECK(again.rays == file.rays);
         CHECK(again.lumens == file.lumens);
         CHECK(again.wavelengths == file.wavelengths);
+        CHECK(again.tristimulus == file.tristimulus);
         CHECK(again.spectra == file.spectra);
         CHECK(again.spectrum_of == file.spectrum_of);
         CHECK(again.polarization == file.polarization);
@@ -329,6 +330,10 @@ TEST_CASE("ray files: what is written as TM-25 reads back to the same") {
     full.polarization = {{{1, 0, 0}, {1, 0, 0}}, {{0, 1, 0}, {0, 1, 0}}, {{0, 0, 0.5f}, {1, 0, 0}}};
     full.texts[8] = "x Ω 光 🜂";
     check_same(full);
+    RayFile colored = read_ray_file(own("own_3rays_flux.tm25ray"));
+    colored.unit = RayFile::Unit::lumen;
+    colored.tristimulus = {{0.95f, 1.09f}, {2, -0.01f}, {0, 3}};
+    check_same(colored);
     RayFile one = read_ray_file(own("own_3rays_flux.tm25ray"));
     one.spectra = {{{400, 500.5f}, {1, 2}}};
     check_same(one);

@@ -120,3 +120,24 @@ TEST_CASE("ray sets: each ray is drawn as often as its part of the flux, dark on
     CHECK(uneven.ref.hi.x > 4.9e-4f);
     CHECK(uneven.summary.find("TM-25, 4000 rays, ") == 0);
 }
+
+TEST_CASE("ray sets: rays have the colours of their tristimulus values, as often as their lumens") {
+    RayFile file = own("own_3rays_flux.tm25ray");
+    file.unit = RayFile::Unit::lumen;
+    const glm::dvec3 colors[] = {{1, 0.2, 0.1}, {0.1, 1, 0.3}, {0.1, 1, 0.3}};
+    glm::dvec3 sum(0);
+    for (size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 rgb = colors[i] * double(i + 1), xyz = xyz_of_rgb(rgb);
+        sum += rgb;
+        file.rays[i].flux = float(xyz.y);
+        file.tristimulus.push_back({xyz.x, xyz.z});
+    }
+    std::vector<uint32_t> words;
+    const RaySet set = append_ray_set(words, file);
+    CHECK(set.lumens.value() == doctest::Approx(luminance(sum)).epsilon(1e-4));
+    REQUIRE(set.colors.size() == 2);
+    const std::vector<double> p = probabilities(words, set.ref);
+    const glm::dvec3 seen = set.lumens.value() * (p[0] * glm::dvec3(set.colors[0].rgb) +
+                                                  (p[1] + p[2]) * glm::dvec3(set.colors[1].rgb));
+    for (int c = 0; c < 3; ++c) CHECK(seen[c] == doctest::Approx(sum[c]).epsilon(2e-4));
+}
