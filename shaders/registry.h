@@ -36,7 +36,8 @@
     X(5, LuminanceMeter, luminance_meter)  \
     X(6, IlluminanceMeter, illuminance)    \
     X(7, IntensityMeter, intensity)        \
-    X(8, RayRecorder, receiver_rays)
+    X(8, RayRecorder, receiver_rays)       \
+    X(9, SurfaceMeter, receiver_surface)
 
 // folder surfaces/, contract interfaces/surface_optics.glsl
 #define SURFACE_CLASSES(X)                           \

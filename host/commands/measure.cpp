@@ -34,7 +34,8 @@ std::vector<const Receiver*> choose_meters(const Scene& scene, const MeasureOpti
     }
     if (names.empty())
         fail_input(
-            "{}: has no receiver that measures (illuminance, intensity, luminance_meter): see etendue render",
+            "{}: has no receiver that measures (illuminance, intensity, luminance_meter, rays, surface): see "
+            "etendue render",
             options.scene.string());
     for (const std::string& name : options.receivers) {
         const auto found =

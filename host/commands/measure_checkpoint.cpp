@@ -37,6 +37,7 @@ void keep(const Measurement& measurement, Checkpoint& checkpoint) {
                           {"rows", readings.meter.rows},
                           {"is_far", readings.meter.is_far},
                           {"has_extent", readings.meter.has_extent},
+                          {"triangles", readings.meter.triangles},
                           {"spectral_bins", readings.spectral_bins},
                           {"forward_paths", readings.forward_paths},
                           {"most_crossings", readings.rays.most},
@@ -109,6 +110,7 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
         meter.name = json.at("name"), meter.unit = json.at("unit");
         meter.columns = json.at("columns"), meter.rows = json.at("rows");
         meter.is_far = json.at("is_far"), meter.has_extent = json.at("has_extent");
+        meter.triangles = json.at("triangles");
         meter.places = array_of<PixelPlace>(checkpoint, path, array_name(m, "places"), meter.pixels());
         readings.sums =
             array_of<ExactSum>(checkpoint, path, array_name(m, "sums"), meter.pixels() * replicates);

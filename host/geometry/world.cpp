@@ -9,6 +9,7 @@
 #include "host/error.h"
 #include "host/geometry/twins.h"
 #include "host/scene/records.h"
+#include "host/scene/watched_surface.h"
 
 namespace etendue {
 namespace {
@@ -205,8 +206,13 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
 
     std::vector<uint32_t> uses(scene.meshes.size());
     for (const MeshInstance& instance : scene.instances) ++uses[instance.mesh];
+    const std::vector<bool> watched = all_watched(scene);
+    std::vector<bool> watched_meshes(scene.meshes.size());
+    for (size_t i = 0; i < watched.size(); ++i)
+        if (watched[i]) watched_meshes[scene.instances[i].mesh] = true;
     const auto merged = [&](uint32_t mesh) {
-        return uses[mesh] == 1 || scene.materials[scene.meshes[mesh].material].emission ||
+        return uses[mesh] == 1 || watched_meshes[mesh] ||
+               scene.materials[scene.meshes[mesh].material].emission ||
                scene.meshes[mesh].triangles.size() * uint64_t(uses[mesh]) <= small_mesh_triangles;
     };
     features.vertex_attributes =
@@ -263,6 +269,7 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
     for (const Box& box : boxes) world.bounds.grow(box);
     std::vector<uint32_t> order;
     builder.add_tree(primitives, boxes, &order);
+    world.sources = order;
     for (uint32_t& i : order) i = placed[i];
     world.placed = std::make_shared<const std::vector<uint32_t>>(std::move(order));
     world.world_primitives = uint32_t(world.primitives.size());

@@ -1,9 +1,9 @@
 // The scene's geometry as the device holds it: one hierarchy over world triangles, analytic shapes and
 // instances.
 //
-// Meshes used once, or emissive, or small, are transformed to world space and merged; the others keep a
-// hierarchy of their own and are placed by instances. World coordinates are relative to `center`, so that a
-// scene far from its origin keeps its digits.
+// Meshes used once, or emissive, or small, or with a meter on their surface, are transformed to world space
+// and merged; the others keep a hierarchy of their own and are placed by instances. World coordinates are
+// relative to `center`, so that a scene far from its origin keeps its digits.
 #pragma once
 #include <functional>
 #include <glm/glm.hpp>
@@ -43,6 +43,7 @@ struct World {
     uint32_t world_primitives = 0;
     // Of the world's primitives: what they are of, counted through the scene's instances and then its shapes.
     std::shared_ptr<const std::vector<uint32_t>> placed;
+    std::vector<uint32_t> sources;  // of the same: their places in the order of scene and meshes
     std::vector<uint32_t> twins;  // of each primitive: the other side of its sheet (twins.h), or no_record
     std::vector<glm::uvec4> nodes;
     std::vector<TransformRecord> transforms;

@@ -81,6 +81,8 @@ std::string place_text(const Meter& meter, size_t pixel) {
     if (meter.is_far)
         return fmt::format("C {:.5g}°, γ {:.5g}°", c_angle(meter, column), gamma_angle(meter, row));
     const glm::vec3 p = meter.places[pixel].position;
+    if (meter.triangles > 0)
+        return fmt::format("triangle {}: {:.4g}, {:.4g}, {:.4g} m", pixel, p.x, p.y, p.z);
     return fmt::format("column {}, row {}: {:.4g}, {:.4g}, {:.4g} m", column, row, p.x, p.y, p.z);
 }
 
@@ -208,6 +210,15 @@ std::vector<MeterPoint> standard_points(uint32_t count) {
 std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points,
                                double glare_from) {
     const Meter& meter = readings.meter;
+    if (has_parts(readings)) {
+        std::vector<Figure> all;
+        for (const ReadingsPart& part : parts_of(readings))
+            for (Figure& figure : figures_of(part.readings, {})) {
+                figure.name = part.name + ": " + figure.name;
+                all.push_back(std::move(figure));
+            }
+        return all;
+    }
     const auto values = luminous_values(readings);
     const std::vector<double> weights = weights_of(meter);
     const Series mean = weighted(values, weights);

@@ -32,6 +32,7 @@ Meter describe_meter(Device& device, Scene& scene, const Receiver& receiver) {
                 receiver.rows,
                 info.is_far,
                 false,
+                receiver.watched.count,
                 pixel_places(device, scene, receiver, receiver.columns, receiver.rows)};
     meter.has_extent = (info.is_far || info.has_receptor) && meter.places.front().extent > 0;
     for (PixelPlace& place : meter.places) place.position += glm::vec3(scene.center);
@@ -40,6 +41,29 @@ Meter describe_meter(Device& device, Scene& scene, const Receiver& receiver) {
 
 double c_angle(const Meter& meter, uint32_t column) { return 360.0 * column / meter.columns; }
 double gamma_angle(const Meter& meter, uint32_t row) { return 180.0 * row / (meter.rows - 1.0); }
+
+bool has_parts(const Readings& readings) { return readings.meter.triangles > 0 && readings.meter.rows > 1; }
+
+std::vector<ReadingsPart> parts_of(const Readings& readings) {
+    std::vector<ReadingsPart> parts;
+    if (!has_parts(readings)) return parts;
+    const Meter& meter = readings.meter;
+    const size_t stride = meter.pixels() / std::size(surface_parts);
+    for (const char* name : surface_parts) {
+        const size_t first = parts.size() * stride;
+        Readings part;
+        part.meter = meter;
+        part.meter.columns = meter.triangles, part.meter.rows = 1;
+        const auto places = meter.places.begin() + std::ptrdiff_t(first);
+        part.meter.places.assign(places, places + meter.triangles);
+        const auto sums = readings.sums.begin() + std::ptrdiff_t(first * replicates);
+        part.sums.assign(sums, sums + std::ptrdiff_t(size_t(meter.triangles) * replicates));
+        part.passes = readings.passes;
+        part.forward_paths = readings.forward_paths, part.probing_paths = readings.probing_paths;
+        parts.push_back({name, std::move(part)});
+    }
+    return parts;
+}
 
 PixelMeans replicate_means(const Readings& readings, uint32_t replicate) {
     PixelMeans means(readings.meter.pixels());

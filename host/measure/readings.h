@@ -31,6 +31,7 @@ struct Meter {
     uint32_t columns = 0, rows = 0;
     bool is_far = false;      // its pixels are directions, by C and gamma (shaders/receivers/intensity.glsl)
     bool has_extent = false;  // values times extents make a flux, lm
+    uint32_t triangles = 0;   // of a meter on the surface of a mesh, and of each of its parts
     std::vector<PixelPlace> places;
     size_t pixels() const { return size_t(columns) * rows; }
 };
@@ -52,6 +53,15 @@ struct Readings {
     uint64_t forward_paths = 0;         // that could have brought light in its passes
     uint64_t probing_paths = 0;  // … traced for no other end than to see whether any arrives, always the same
 };
+
+// A meter on a surface reads four things at each triangle, the `surface_parts`: readings of each alone, a row
+// of pixels, a pixel a triangle; no spectra. Empty of other meters, and of such a part.
+struct ReadingsPart {
+    std::string name;
+    Readings readings;
+};
+std::vector<ReadingsPart> parts_of(const Readings& readings);
+bool has_parts(const Readings& readings);
 
 using PixelMeans = std::vector<glm::dvec3>;  // linear Rec.709; (1, 1, 1) is one of the meter's units
 PixelMeans replicate_means(const Readings& readings, uint32_t replicate);

@@ -27,13 +27,19 @@ std::string shown(double x, double half) {
     return fmt::format("{:.{}g}", x, std::clamp(digits, 2, 9));
 }
 
+// Of errors: channels' errors are taken as if they had one cause, so it is at most as large, and in white
+// light equal.
+double luminance_at(const Image& image, const std::string& layer, size_t pixel) {
+    const auto at = [&](const char* channel) {
+        return double(plane(image, size_t(find_channel(image, layer + channel)))[pixel]);
+    };
+    return luminance({at("R"), at("G"), at("B")});
+}
+
 std::string pixel_table(const Readings& readings, const Image& image) {
     const Meter& meter = readings.meter;
     std::string text = meter.is_far ? "C_deg,gamma_deg,solid_angle_sr" : "column,row,x_m,y_m,z_m,area_m2";
     text += fmt::format(",value_{0},standard_error_{0}\n", meter.unit == "cd/m²" ? "cd_m2" : meter.unit);
-    const auto at = [&](const char* channel, size_t i) {
-        return double(plane(image, size_t(find_channel(image, channel)))[i]);
-    };
     for (size_t i = 0; i < meter.pixels(); ++i) {
         const uint32_t column = uint32_t(i % meter.columns), row = uint32_t(i / meter.columns);
         const PixelPlace& place = meter.places[i];
@@ -44,12 +50,27 @@ std::string pixel_table(const Readings& readings, const Image& image) {
             text +=
                 fmt::format("{},{},{:.6g},{:.6g},{:.6g},{}", column, row, place.position.x, place.position.y,
                             place.position.z, meter.has_extent ? fmt::format("{:.6g}", place.extent) : "");
-        // The channels' errors are taken as if they had one cause: at most as large, and in white light
-        // equal.
-        text += fmt::format(",{:.7g},{:.3g}\n", luminance({at("R", i), at("G", i), at("B", i)}),
-                            luminance({at("error.R", i), at("error.G", i), at("error.B", i)}));
+        text += fmt::format(",{:.7g},{:.3g}\n", luminance_at(image, "", i), luminance_at(image, "error.", i));
     }
     return text;
+}
+
+// A row a triangle, with what each part reads there.
+std::string triangle_table(const Readings& readings) {
+    std::string text = "triangle,x_m,y_m,z_m,area_m2";
+    for (const char* name : {"front_illuminance", "back_illuminance", "front_exitance", "back_exitance"})
+        text += fmt::format(",{0}_lx,standard_error_{0}_lx", name);
+    std::vector<Image> images;
+    for (const ReadingsPart& part : parts_of(readings)) images.push_back(to_image(part.readings));
+    for (uint32_t t = 0; t < readings.meter.triangles; ++t) {
+        const PixelPlace& place = readings.meter.places[t];
+        text += fmt::format("\n{},{:.6g},{:.6g},{:.6g},{:.6g}", t, place.position.x, place.position.y,
+                            place.position.z, place.extent);
+        for (const Image& image : images)
+            text +=
+                fmt::format(",{:.7g},{:.3g}", luminance_at(image, "", t), luminance_at(image, "error.", t));
+    }
+    return text + "\n";
 }
 
 Table all_figures(const Measurement& measurement, const ReportOptions& options) {
@@ -126,7 +147,9 @@ std::vector<std::string> write_report(const ReportOptions& options, const Measur
         image.attributes["rays"] = double(all_rays(measurement.counters));
         image.attributes["algorithm"] = std::string(algorithm_name(measurement.choice.algorithm));
         outputs.write([&] { write_exr(stem.string() + ".exr", image); });
-        outputs.write([&] { write_atomically(stem.string() + ".csv", pixel_table(readings, image)); });
+        const std::string table =
+            has_parts(readings) ? triangle_table(readings) : pixel_table(readings, image);
+        outputs.write([&] { write_atomically(stem.string() + ".csv", table); });
         if (readings.meter.is_far) {
             const IntensityDistribution d = intensity_distribution(readings);
             const PhotometricLabels labels{"", readings.meter.name, "", "etendue " ETENDUE_VERSION, ""};
@@ -139,7 +162,7 @@ std::vector<std::string> write_report(const ReportOptions& options, const Measur
             notes.push_back(fmt::format("{}: no rays have been recorded: forward rays alone are",
                                         readings.meter.name));
         for (const char* plot : {".map.png", ".sections.svg", ".polar.svg"}) fs::remove(stem.string() + plot);
-        if (!is_dark(readings)) script += plots_of(readings, stem);
+        if (!is_dark(readings) && !has_parts(readings)) script += plots_of(readings, stem);
     }
     if (!script.empty())
         if (const std::string failure = run_gnuplot(script); !failure.empty()) notes.push_back(failure);

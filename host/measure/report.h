@@ -1,8 +1,8 @@
 // The report of a measurement: a folder with
 //   index.html               a page of its own: figures, maps, sections, polar diagrams, the balance of power
 //   figures.csv              every figure of every meter, with its interval
-//   METER.exr, METER.csv     each pixel and its standard error
-//   METER.ies, METER.ldt     of intensities, as lamps are published (LM-63-2019, EULUMDAT)
+//   METER.exr, METER.csv     each pixel and its standard error; of a meter on a surface the table is by
+//   triangle METER.ies, METER.ldt     of intensities, as lamps are published (LM-63-2019, EULUMDAT)
 //   METER.tm25ray            the rays that a receiver has recorded (TM-25)
 //   METER.map.png            in false colours with isolines
 //   METER.sections.svg       through the middle, with the 95 % interval; of intensities METER.polar.svg

@@ -64,6 +64,7 @@ void read_class(const std::string& text, ClassInfo& info) {
     info.is_crystal = text.find(info.prefix + "_crystal(") != std::string::npos;
     info.has_aperture = text.find("#define " + info.prefix + "_HAS_APERTURE") != std::string::npos;
     info.records_rays = text.find("#define " + info.prefix + "_RECORDS_RAYS") != std::string::npos;
+    info.on_surface = text.find(info.prefix + "_at_surface(") != std::string::npos;
     info.has_receptor = text.find(info.prefix + "_receptor(") != std::string::npos;
     info.is_far = text.find(info.prefix + "_far(") != std::string::npos;
     std::smatch unit;
@@ -326,6 +327,12 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         if (interface.interface == Interface::receiver) {
             text += fmt::format("#define {0}_HAS_RECEPTOR {1:d}\n#define {0}_IS_FAR {2:d}\n", info->prefix,
                                 info->has_receptor, info->is_far);
+            text += fmt::format("#define {}_ON_SURFACE {:d}\n", info->prefix, info->on_surface);
+            if (!info->on_surface)
+                text += fmt::format(
+                    "#define {0}_at_surface(r, primitive, front, leaves) no_receiver_sample()\n"
+                    "#define {0}_face(r, film, front) 0u\n",
+                    info->prefix);
             if (!info->records_rays) text += fmt::format("#define {}_RECORDS_RAYS 0\n", info->prefix);
             if (!info->has_receptor)
                 text +=

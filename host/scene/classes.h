@@ -59,8 +59,8 @@ struct ClassInfo {
     bool says_polarization = false;  // NAME_mueller is there
     bool says_coverage = false;      // NAME_coverage is there
     bool is_crystal = false;         // NAME_crystal is there: it refracts doubly
-    bool has_aperture = false, has_receptor = false,
-         is_far = false, records_rays = false;  // of receivers (interfaces/receiver.glsl)
+    bool has_aperture = false, has_receptor = false, is_far = false, records_rays = false,
+         on_surface = false;           // of receivers (interfaces/receiver.glsl)
     std::string pixel_unit;            // of receivers that measure; empty = a camera
     bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization
     bool has_body_mueller = false;     // light leaves its body (shaders/features/body_mueller.glsl)

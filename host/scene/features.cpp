@@ -13,7 +13,7 @@ Features Features::everything() {
     f.media = f.scattering = f.bending = f.interfaces = f.straight = f.coverage = f.emission_maps = f.twins =
         f.light_tree = true;
     f.general_mueller = f.body_mueller = f.crystals = true;
-    f.apertures = f.far_receivers = f.receptors = f.receptor_shapes = true;
+    f.apertures = f.surface_meters = f.far_receivers = f.receptors = f.receptor_shapes = true;
     f.body_count = most_bodies;
     f.light_count = 16;
     f.infinite_light_count = 2;
@@ -53,6 +53,7 @@ std::string Features::defines() const {
     define("HAS_POLARIZED_LIGHTS", polarization && polarized_lights);
     define("HAS_APERTURES", apertures);
     define("HAS_FAR_RECEIVERS", far_receivers);
+    define("HAS_SURFACE_METERS", surface_meters);
     define("HAS_RECEPTORS", receptors);
     define("HAS_RECEPTOR_SHAPES", receptor_shapes);
     if (receptors) define("RECEPTOR_MATERIAL", receptor_material);

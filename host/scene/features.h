@@ -37,6 +37,7 @@ struct Features {
     bool crystals = false;       // some medium refracts doubly
     bool apertures = false;      // some receiver draws its rays from many (shaders/interfaces/receiver.glsl)
     bool far_receivers = false;  // … is far away
+    bool surface_meters = false;   // … lies on the surface of a mesh
     bool receptor_shapes = false;  // … is no plane (shaders/features/receptor_shapes.glsl)
     bool receptors = false;        // … has a receptor, which is made of this material:
     uint32_t receptor_material = 0;

@@ -139,6 +139,10 @@ void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value
     } else if (type == "RayFileRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of a ray file", place);
         store(record, at, resolver.rays(value.get<std::string>(), info, record, where));
+    } else if (type == "WatchedSurface") {
+        if (!value.is_string() && !value.is_null())
+            fail_input("{}: allowed: the name of a node or of a mesh", place);
+        store(record, at, resolver.watched(value.is_null() ? "" : value.get<std::string>(), where));
     } else if (type == "MuellerTableRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of a .pbsdf file", place);
         store(record, at, resolver.mueller_table(value.get<std::string>()));

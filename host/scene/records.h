@@ -17,6 +17,7 @@
 #include "host/photometry/ray_set.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
+#include "host/scene/watched_surface.h"
 #include "host/lights/environment_map.h"
 #include "host/lights/sky.h"
 #include "host/scene/spectral_value.h"
@@ -65,6 +66,9 @@ struct RecordResolver {
                              const std::vector<std::byte>& record, const std::string& where)>
         rays = [](const std::filesystem::path&, const ClassInfo&, const std::vector<std::byte>&,
                   const std::string&) { return RayFileRef{}; };
+    // The mesh of that name, or of the node that the receiver stands at.
+    std::function<WatchedSurface(const std::string& mesh, const std::string& where)> watched =
+        [](const std::string&, const std::string&) { return WatchedSurface{}; };
     // The table of a record of the class mie, whose parameters are filled already.
     std::function<MieRef(const ClassInfo& info, const std::vector<std::byte>& record,
                          const std::string& where)>

@@ -39,6 +39,9 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     resolver_.mueller_table = [this](const std::filesystem::path& file) { return add_mueller_table(file); };
     resolver_.own_shape = [this](const std::string& where) { return own_shape(where); };
     resolver_.photometry = [this](const std::filesystem::path& file) { return add_photometry(file); };
+    resolver_.watched = [this](const std::string& mesh, const std::string& where) {
+        return add_watched(mesh, where);
+    };
     resolver_.sky = [this](const ClassInfo& info, const std::vector<std::byte>& record,
                            const std::string& where) { return add_sky(info, record, where); };
     resolver_.rays = [this](const std::filesystem::path& file, const ClassInfo& info,
@@ -183,6 +186,7 @@ const ClassInfo& SceneCompiler::use_class(Interface interface, const ObjectDescr
     out_.features.body_mueller |= info->has_body_mueller;
     out_.features.apertures |= info->has_aperture;
     out_.features.far_receivers |= info->is_far;
+    out_.features.surface_meters |= info->on_surface;
     return *info;
 }
 

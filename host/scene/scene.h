@@ -18,6 +18,7 @@
 #include "host/scene/features.h"
 #include "host/spectra/spectrum.h"
 #include "host/scene/records.h"
+#include "host/scene/watched_surface.h"
 #include "host/geometry/world.h"
 
 namespace etendue {
@@ -31,6 +32,7 @@ struct Receiver {
     const ClassInfo* info = nullptr;
     nlohmann::json parameters;         // as in the scene file
     glm::dmat4 world_from_local{1.0};  // in the coordinates of the scene file
+    WatchedSurface watched;            // of a meter on a surface
 };
 
 // What was compiled of a kernel, for --stats and inspect; each once a scene.

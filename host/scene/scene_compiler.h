@@ -89,6 +89,7 @@ class SceneCompiler {
     std::vector<Box> shape_bounds(const std::vector<uint32_t>& refs);
     void upload_world();
     void add_receivers();
+    WatchedSurface add_watched(const std::string& mesh, const std::string& where);
     glm::dmat4 recentred(const glm::dmat4& world_from_local) const;
 
     // scene_lights.cpp
@@ -142,6 +143,8 @@ class SceneCompiler {
     std::vector<MuellerTable> mueller_tables_;
     SpectralValue surrounding_;  // index of the medium whose phase function is being added
     std::vector<std::shared_ptr<const MieTable>> mie_tables_;
+    std::vector<uint32_t> watched_words_;  // of meters on surfaces
+    std::vector<WatchedSurface> watched_;  // … in the order of the receivers
     std::vector<MaterialRecord> materials_;
     std::vector<std::pair<SpectralValue, SpectralKind>> spectra_;  // that records refer to
     std::vector<SpectrumRef> ray_colors_;                          // of ray files

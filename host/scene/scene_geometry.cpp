@@ -70,6 +70,7 @@ uint64_t SceneCompiler::world_key(const std::vector<Box>& shape_bounds) const {
         add(instance.world_from_local);
     }
     for (const MaterialDescription& m : in_.materials) add(m.emission.has_value());
+    for (const bool watched : all_watched(in_)) add(watched);
     return key;
 }
 
@@ -110,6 +111,27 @@ static void fix_resolution(Receiver& receiver, const std::string& where) {
     }
 }
 
+WatchedSurface SceneCompiler::add_watched(const std::string& mesh, const std::string& where) {
+    const std::string place = message_place(in_, where);
+    const std::vector<uint32_t> instances = watched_instances(in_, mesh, where);
+    if (instances.empty() && mesh.empty())
+        fail_input("{}: its node has no mesh; allowed there, or with a mesh: the name of one, or of its node",
+                   place);
+    if (instances.empty())
+        fail_input("{}/mesh: there is no mesh, and no node with one, called {}", place, mesh);
+    for (const uint32_t i : instances) {
+        const MaterialDescription& material = in_.materials[in_.meshes[in_.instances[i].mesh].material];
+        if (material.priority > 0)
+            fail_input("{}: {} bounds a body with a priority; allowed: a mesh without", place, material.name);
+    }
+    const WatchedSurface surface = append_watched(watched_words_, memory_.world, instances);
+    if (surface.count == 0 || surface.count > most_watched_triangles)
+        fail_input("{}: its mesh has {} triangles; allowed: 1 to {}", place, surface.count,
+                   most_watched_triangles);
+    watched_.push_back(surface);
+    return surface;
+}
+
 void SceneCompiler::add_receivers() {
     std::vector<PlacedObject> all = in_.receivers;
     if (all.empty() && out_.radius > 0) {
@@ -133,7 +155,13 @@ void SceneCompiler::add_receivers() {
         out_.receivers.push_back({receiver.name, no_record, aspect, 0, 0, receiver.wants_stokes,
                                   added.back().info, object.parameters, receiver.world_from_local});
         fix_resolution(out_.receivers.back(), message_place(in_, object.where));
+        if (!added.back().info->on_surface) continue;
+        Receiver& meter = out_.receivers.back();
+        meter.watched = watched_.back();
+        meter.columns = meter.watched.columns,
+        meter.rows = uint32_t(std::size(surface_parts)) * meter.watched.rows;
     }
+    if (out_.features.surface_meters) upload("WatchedWords", watched_words_);
     const auto refs = references(Interface::receiver, added);
     for (size_t i = 0; i < refs.size(); ++i) out_.receivers[i].ref = refs[i];
 }
@@ -148,8 +176,10 @@ void move_receiver(Scene& scene, size_t index, const glm::dmat4& world_from_loca
     const double volume = glm::determinant(glm::dmat3(placement));
     if (!std::isfinite(volume) || volume == 0)
         fail_input("{}: its placement squashes space flat", place.file.string());
+    RecordResolver resolver{place};
+    resolver.watched = [&](const std::string&, const std::string&) { return receiver.watched; };
     const std::vector<std::byte> record =
-        fill_record(*receiver.info, {receiver.info->name, parameters, ""}, placement, RecordResolver{place});
+        fill_record(*receiver.info, {receiver.info->name, parameters, ""}, placement, resolver);
     scene.buffers.at("ReceiverRecords")
         .write(record.data(), record.size(), uint64_t(record_index(receiver.ref)) * receiver.info->stride);
     receiver.parameters = parameters;

@@ -114,6 +114,9 @@
 #ifndef HAS_RECEPTORS
 #define HAS_RECEPTORS 0
 #endif
+#ifndef HAS_SURFACE_METERS
+#define HAS_SURFACE_METERS 0
+#endif
 #ifndef HAS_FAR_RECEIVERS
 #define HAS_FAR_RECEIVERS 0
 #endif

@@ -124,7 +124,7 @@ float others_of_hit(Path path, uint light, LightHit hit, float sampling) {
     if ((path.flags & PATH_STARTS) != 0u) sampling = 0.0;
     return sampling * path.vcm / passage_of(path) + emission * path.vc;
 }
-bool hit_stands_alone(Path path) { return (path.flags & PATH_STARTS) != 0u && !(HAS_FAR_RECEIVERS == 1 && path.vc > 0.0); }
+bool hit_stands_alone(Path path) { return (path.flags & PATH_STARTS) != 0u && !((HAS_FAR_RECEIVERS == 1 || HAS_SURFACE_METERS == 1) && path.vc > 0.0); }
 
 // … of a light sample, by rays that hit the light and by forward paths.
 float others_of_light_sample(Path path, ScatteringPoint s, LightSample l, uint light, Scattering pair, VertexMis mis) {

@@ -1,4 +1,4 @@
-// What only some classes of receivers have: receptors, of which some record rays, and a place far away.
+// What only some classes of receivers have: receptors, of which some record rays, a place far away, or on a surface.
 #include "features/defaults.glsl"
 #include "interfaces/receiver.glsl"
 
@@ -34,6 +34,41 @@ bool records_rays(uint ref) {
 }
 #else
 #define has_receptor(ref) false
+#endif
+
+#if HAS_SURFACE_METERS
+bool on_surface(uint ref) {
+    bool result = false;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_ON_SURFACE == 1; break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+ReceiverSample receiver_at_surface(uint ref, uint primitive, bool front, bool leaves) {
+    ReceiverSample result = no_receiver_sample();
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_at_surface(name##_record(record_index(ref)), primitive, front, leaves); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
+uint receiver_face(uint ref, vec2 film, out bool front) {
+    uint result = 0u;
+    front = true;
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_face(name##_record(record_index(ref)), film, front); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+#else
+#define on_surface(ref) false
 #endif
 
 #if HAS_FAR_RECEIVERS

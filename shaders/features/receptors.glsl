@@ -5,6 +5,7 @@
 //
 // Where a receptor coincides with a surface it lies on top: a forward ray is caught a margin before, from where it goes on.
 #include "features/bending.glsl"
+#include "features/surface_meters.glsl"
 #include "features/views.glsl"
 #include "lib/forward_pass.glsl"
 #include "lib/frames.glsl"
@@ -32,7 +33,9 @@ uint next_receptor(Path path, out ReceptorHit nearest) {
     }
     return view;
 }
-uint receptor_ahead(Path path) {
+// The view that has caught the path.
+uint catching_view(Path path, Hit hit) {
+    if (hit.primitive != NO_RECORD) return watching_view(path, hit);
     ReceptorHit r;
     return next_receptor(path, r);
 }
@@ -40,6 +43,7 @@ uint receptor_ahead(Path path) {
 
 // Readies the path for its next ray and returns where that ends at the latest.
 float begin_ray(inout Path path) {
+    if (leaves_watched(path)) return 0.0;
     float end = begin_step(path);
 #if FORWARD
     path.flags &= ~PATH_TO_RECEPTOR;
@@ -54,13 +58,16 @@ float begin_ray(inout Path path) {
 }
 
 bool is_caught(Path path, Hit hit, bool scatters) {
-    return (path.flags & PATH_TO_RECEPTOR) != 0u && hit.primitive == NO_RECORD && !scatters;
+    if (scatters) return false;
+    if (hit.primitive != NO_RECORD) return watching_view(path, hit) != NO_RECORD;
+    return (path.flags & PATH_TO_RECEPTOR) != 0u;
 }
 
 // Where the path is caught.
-SurfacePoint receptor_point(Path path) {
+SurfacePoint receptor_point(Path path, Hit hit) {
     SurfacePoint p;
     p.position = path.origin;
+    p.error = vec3(0);
     p.geometric_normal = -path.direction;
 #if FORWARD
     ReceptorHit r;
@@ -68,11 +75,16 @@ SurfacePoint receptor_point(Path path) {
     uint shape = r.shape;
     p.position += r.t * path.direction;
     p.geometric_normal = r.normal;
+    if (HAS_SURFACE_METERS == 1)
+        if (hit.primitive != NO_RECORD) {
+            p = locate(hit, path.origin, path.direction);
+            if (dot(p.geometric_normal, path.direction) > 0.0) p.geometric_normal = -p.geometric_normal;
+        }
 #else
     uint shape = path.flags >> PATH_SHAPE_SHIFT & 3u;
 #endif
     p.shading_normal = p.geometric_normal;
-    p.error = vec3(receptor_margin(p.position, 0.0));
+    p.error = max(p.error, vec3(receptor_margin(p.position, 0.0)));
     p.tangent = vec4(frame_around(p.geometric_normal)[0], 1.0);
     p.color = vec4(1);
     p.uv0 = p.uv1 = vec2(0);
@@ -85,28 +97,32 @@ void leave_receptor(inout Path path) { path.flags &= ((1u << PATH_PASSED_SHIFT) 
 
 #if FORWARD
 // Light goes on from a little before where it was caught.
-void pass_receptor(inout Path path, SurfacePoint p) {
-    path.flags |= 1u << (PATH_PASSED_SHIFT + receptor_ahead(path));
+void pass_receptor(inout Path path, SurfacePoint p, Hit hit) {
+    path.flags |= 1u << (PATH_PASSED_SHIFT + catching_view(path, hit));
+    if (hit.primitive != NO_RECORD) {
+        come_again(path, p, hit);
+        return;
+    }
     path.origin = p.position - 2.0 * receptor_margin(p.position, distance(p.position, path.origin)) * path.direction;
 }
 
 // The end of an event at a receptor: the shadow ray has no way to go, the path goes on. A macro, since it returns.
-#define RETURN_IF_CAUGHT(a, path, shadow)  \
-    if (a.caught) {                        \
-        shadow.t_max = ALREADY_THERE;      \
-        pass_receptor(path, a.p);          \
-        return true;                       \
+#define RETURN_IF_CAUGHT(a, path, hit, shadow) \
+    if (a.caught) {                            \
+        shadow.t_max = ALREADY_THERE;          \
+        pass_receptor(path, a.p, hit);         \
+        return true;                           \
     }
 #endif
 bool goes_to_receptor(Path path) { return (path.flags & PATH_TO_RECEPTOR) != 0u; }
 
 #else
 #define RECEPTOR_MATERIAL 0u
-#define RETURN_IF_CAUGHT(a, path, shadow)
+#define RETURN_IF_CAUGHT(a, path, hit, shadow)
 #define goes_to_receptor(path) false
 #define begin_ray(path) begin_step(path)
 #define is_caught(path, hit, scatters) false
-#define receptor_point(path) volume_point(vec3(0), vec3(0))
+#define receptor_point(path, hit) volume_point(vec3(0), vec3(0))
 #define leave_receptor(path)
-#define receptor_ahead(path) 0u
+#define catching_view(path, hit) 0u
 #endif

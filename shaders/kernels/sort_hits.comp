@@ -30,6 +30,7 @@ void main() {
             if (hits[slot].primitive != NO_RECORD) {
                 if (HAS_PRIORITIES == 1) settle_hit(slot);
                 tag = record_tag(materials[primitives[hits[slot].primitive].material].surface);
+                if (watching_view(path_states[slot], hits[slot]) != NO_RECORD) tag = record_tag(materials[RECEPTOR_MATERIAL].surface);
             } else if (goes_to_receptor(path_states[slot])) {
                 tag = record_tag(materials[RECEPTOR_MATERIAL].surface);
             }

@@ -27,6 +27,8 @@ struct Path {
     Sampler random;
 #if FORWARD
     uvec2 vertices;       // the last one stored of this path, and how many
+    MEMBER_IF(HAS_SURFACE_METERS, uvec2 leaves;)  // watched primitive and side that the next ray leaves, and the view that is to
+                                                  // know next (features/surface_meters.glsl); NO_RECORD = none
 #else
     Received radiance;    // collected so far
 #endif

@@ -27,8 +27,9 @@ Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, 
         a.p = volume_point(path.origin + hit.t * path.direction, path.direction);
     } else if (!a.escapes) {
         if (a.caught) {
-            a.p = receptor_point(path);
+            a.p = receptor_point(path, hit);
         } else {
+            forget_watched(path);
             a.p = locate(hit, path.origin, path.direction);
             a.sides = meet_faces(path.origin, path.direction, path.around, hit, a.p);
         }

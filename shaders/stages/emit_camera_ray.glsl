@@ -4,6 +4,7 @@
 #include "features/dispersion.glsl"
 #include "features/polarization.glsl"
 #include "features/start_media.glsl"
+#include "features/surface_meters.glsl"
 #include "features/weights.glsl"
 #include "features/views.glsl"
 #include "lib/forward_pass.glsl"
@@ -16,7 +17,7 @@ Path emit_camera_ray(View view, uint place, uint sample_index, uint seed) {
     uvec2 pixel = uvec2(place % view.width, place / view.width);
     Path path;
     path.random = start_sampler(pixel, sample_index, seed);
-    vec2 film = (vec2(pixel) + sample_2d(path.random)) / vec2(view.width, view.height);
+    vec2 film = (vec2(pixel) + within_pixel(view, sample_2d(path.random))) / vec2(view.width, view.height);
     vec2 u = vec2(0.5);
     if (HAS_APERTURES == 1) u = sample_2d(path.random);
     CameraRay ray = receiver_emit(view.receiver, film, u, film_aspect(view));
@@ -26,7 +27,7 @@ Path emit_camera_ray(View view, uint place, uint sample_index, uint seed) {
     path.radiance = Received(0);
     path.reference = ray.origin;
     path.pdf = 0.0;
-    path.around = around_receiver(view);
+    path.around = around_ray(view, film);
     path.depth = 0u;
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
     if (HAS_RECEPTORS == 1 && ray.at_receptor) path.flags |= PATH_TO_RECEPTOR | (ray.shape << PATH_SHAPE_SHIFT);
@@ -35,8 +36,9 @@ Path emit_camera_ray(View view, uint place, uint sample_index, uint seed) {
     start_mode(path);
     start_bending(path);
     start_passage(path);
-    start_weights(path, forward_share(view, ray) * ray.connect_pdf, is_far(view.receiver) ? forward_share(view, ray) : 0.0);
-    if (FORWARD_ONLY == 1 && is_far(view.receiver)) path.throughput = Spectrum(0);  // light gets there by itself
+    bool is_met = is_far(view.receiver) || starts_at_surface(view, ray);  // by light on its way
+    start_weights(path, forward_share(view, ray) * ray.connect_pdf, is_met ? forward_share(view, ray) : 0.0);
+    if (FORWARD_ONLY == 1 && is_met) path.throughput = Spectrum(0);  // light gets there by itself
     start_bias(path);
     return path;
 }

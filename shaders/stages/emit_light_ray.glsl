@@ -5,6 +5,7 @@
 #include "features/polarization.glsl"
 #include "features/recording.glsl"
 #include "features/start_media.glsl"
+#include "features/surface_exitance.glsl"
 #include "interfaces/light_source.glsl"
 #include "lib/forward_pass.glsl"
 #include "lib/path.glsl"
@@ -33,6 +34,7 @@ Path emit_light_ray(uint index) {
     start_bending(path);
     start_passage(path);
     start_forward_weights(path, density, ray.is_delta, light, ray.normal);
+    leave_light(path, light, ray.front);
     record_light(light);
     return path;
 }

@@ -2,6 +2,7 @@
 #include "features/far_receivers.glsl"
 #include "features/meeting.glsl"
 #include "features/ray_record.glsl"
+#include "features/surface_exitance.glsl"
 #include "lib/events.glsl"
 #include "stages/arrive.glsl"
 
@@ -35,23 +36,28 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
     // connect_receiver, scatter_surfaces
     ReceiverSample r = no_receiver_sample();
     uint v = NO_RECORD;
-    if (!is_delta) v = a.caught ? receptor_ahead(path) : choose_view(path.random);
+    if (!is_delta) v = a.caught ? catching_view(path, hit) : choose_view(path.random);
     View view = views[v == NO_RECORD ? 0u : v];
     if (a.caught) record_crossing(path, p.position, view);
     if (v != NO_RECORD) r = receiver_connect(view.receiver, p.position, sample_2d(path.random), film_aspect(view));
+    if (HAS_SURFACE_METERS == 1)
+        if (a.caught && hit.primitive != NO_RECORD) r = caught_at_surface(path, view, hit);
     vec3 wi = r.direction * s.frame;
     SurfaceEvent event = scattering_event(s, wi, wi, 1u, sample_3d(path.random));
     if (r.pdf > 0.0 && is_on_one_side(s, r.direction, wi))
         shadow = connect_receiver(path, p, s, view, r, event.pair, mis);
-    RETURN_IF_CAUGHT(a, path, shadow)
+    RETURN_IF_CAUGHT(a, path, hit, shadow)
     kind = event.next.event;
-    return follow_sample(path, p, s, event, mis);
+    if (!follow_sample(path, p, s, event, mis)) return false;
+    if (!a.scatters && hit.instance == NO_RECORD) leave_primitive(path, hit.primitive, dot(path.direction, p.geometric_normal) > 0.0);
+    return true;
 }
 
 // Returns whether the path goes on; the shadow ray is to be traced in either case.
 bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Counters counters, out ShadowRay shadow) {
     shadow = no_shadow_ray();
     follow_hero(path);
+    if (leave_surface(path, shadow)) return true;
     float carried = luminance(path.throughput);
     Spectrum before = path.throughput;
     bool scatters = cross_medium(path, hit);

@@ -244,3 +244,32 @@ TEST_CASE("recorded rays are written, and parts merge to those of one run") {
     CHECK(backward.code == 0);
     CHECK(backward.err.find("gonio: no rays have been recorded") != std::string::npos);
 }
+
+TEST_CASE("a meter on a mesh is reported side by side, with a table by triangle; parts merge") {
+    Executable program;
+    std::string scene = scene_text;
+    const std::string gonio = R"({"class": "intensity", "resolution": [8, 7]}}}})";
+    // A triangle in the xz plane, 2 m² below the lamp.
+    scene.replace(scene.find(gonio), gonio.size(), R"({"class": "surface"}}}, "mesh": 0})");
+    scene.insert(scene.rfind('}'), R"(, "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "count": 3, "type": "VEC3", "componentType": 5126, "min": [-1, -1, 0], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri":
+        "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAACAvwAAgD8AAAAA"}])");
+    write_text(program.folder / "s.gltf", scene);
+    const Run run = program.run({"measure", "s.gltf", "-o", "out", "--passes", "32"});
+    CAPTURE(run.err);
+    REQUIRE(run.code == 0);
+    const std::string table = text_of(program, "out/gonio.csv");
+    CHECK(table.rfind("triangle,x_m,y_m,z_m,area_m2,front_illuminance_lx,", 0) == 0);
+    CHECK(std::count(table.begin(), table.end(), '\n') == 2);
+    CHECK(table.find("\n0,-0.333333,0,") != std::string::npos);
+    const std::string figures = text_of(program, "out/figures.csv");
+    for (const char* part : {"front, illuminance: flux", "back, illuminance: mean", "front, exitance: flux",
+                             "back, exitance: mean"})
+        CHECK(figures.find(part) != std::string::npos);
+    REQUIRE(program.run({"measure", "s.gltf", "-q", "--passes", "0:16", "--checkpoint", "a.etd"}).code == 0);
+    REQUIRE(program.run({"measure", "s.gltf", "-q", "--passes", "16:32", "--checkpoint", "b.etd"}).code == 0);
+    REQUIRE(program.run({"merge", "b.etd", "a.etd", "-o", "merged"}).code == 0);
+    CHECK(text_of(program, "merged/gonio.csv") == table);
+    CHECK(text_of(program, "merged/figures.csv") == figures);
+}
