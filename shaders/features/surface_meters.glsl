@@ -1,6 +1,7 @@
 // Meters on the surfaces of meshes (receivers/surface.glsl). What comes to a side they catch as receptors do, a hair before it: forward
 // paths where they hit a triangle that is watched, so that no search is needed. What leaves a side a ray brings as it leaves the scene for
 // receivers far away (features/surface_exitance.glsl).
+#include "features/clearance.glsl"
 #include "features/views.glsl"
 #include "lib/hits.glsl"
 #include "lib/materials.glsl"
@@ -48,10 +49,9 @@ ReceiverSample caught_at_surface(Path path, View view, Hit hit) {
 // that the surface is still apart from it.
 void come_again(inout Path path, SurfacePoint p, Hit hit) {
     if (path.around.medium == NO_RECORD) return;
-    vec3 a = abs(p.position);
     float cosine = max(abs(dot(path.direction, p.geometric_normal)), 1e-3);
-    float back = 128.0 * EPSILON * (max(a.x, max(a.y, a.z)) + hit.t) / cosine;
-    path.origin = p.position - min(back, 0.5 * hit.t) * path.direction;
+    float height = clearance(primitives[hit.primitive], p.position) + dot(abs(p.geometric_normal), 4.0 * p.error);
+    path.origin = p.position - min(height / cosine, 0.5 * hit.t) * path.direction;
 }
 
 // The path has come to what it has hit: it may be caught at the next hit.

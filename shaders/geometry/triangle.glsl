@@ -85,6 +85,16 @@ bool triangle_intersect(Triangle r, vec3 origin, vec3 direction, float t_max, ou
     return triangle_meet(ray_shear(direction), origin, direction, r.v0, r.v1, r.v2, t_max, hit);
 }
 
+// The height above a point of it from which rays surely hit it: four times what triangle_meet asks for. m
+float triangle_clearance(Triangle r, vec3 point) {
+    vec3 e1 = r.v1 - r.v0, e2 = r.v2 - r.v0;
+    vec3 size = max(abs(e1), abs(e2));
+    float scale = max(max(size.x, size.y), size.z);
+    e1 /= scale, e2 /= scale;
+    vec3 p = e1.yzx * e2.zxy, q = e1.zxy * e2.yzx;
+    return 4.0 * gamma(8.0) * dot(abs(p) + abs(q), abs(r.v0 - point)) / max(length(p - q), 1e-30);
+}
+
 // Twice the area along the normal.
 vec3 triangle_cross(Triangle r) { return cross(r.v1 - r.v0, r.v2 - r.v0); }
 

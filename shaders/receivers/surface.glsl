@@ -6,6 +6,7 @@
 //
 // Example:
 //     {"nodes": [{"name": "floor", "extensions": {"ETD_optics": {"receiver": {"class": "surface", "mesh": "light tiles"}}}}]}
+#include "features/clearance.glsl"
 #include "lib/primitives.glsl"
 
 // Twin: host/scene/watched_surface.h.
@@ -50,8 +51,7 @@ CameraRay receiver_surface_emit(SurfaceMeter r, vec2 film, vec2 u, float film_as
     float density = exists ? 1.0 / (triangle_area(t) * receiver_surface_pixels(r)) : INFINITY;
     float weight = exists ? PI : 0.0;
     if (part < 2u) return CameraRay(p.position, -normal, weight, density, 1.0, true, true, 0u);
-    vec3 a = abs(p.position);
-    vec3 origin = offset_origin(p.position, vec3(64.0 * EPSILON * max(a.x, max(a.y, a.z))) + p.error, normal, normal);
+    vec3 origin = offset_origin(p.position + clearance(t, p.position) * normal, 4.0 * p.error, normal, normal);
     return CameraRay(origin, -(frame_around(normal) * warp_cosine_hemisphere(u)), weight, density * INV_PI, 0.0, true, false, 0u);
 }
 
