@@ -178,6 +178,24 @@ TEST_CASE("a pane of glass lets through, reflects and receives what its closed v
     }
 }
 
+TEST_CASE("light that passes two filters of one mesh straight on is read at each") {
+    Mesh sheets;
+    for (const float y : {0.0f, -0.3f}) sheets.quad({-1, y, -1}, {-1, y, 1}, {1, y, 1}, {1, y, -1});
+    SceneBuilder s;
+    sheets.add_to(s, s.surface({{"class", "color_filter"}, {"transmittance", 0.5}}));
+    watch_last(s);
+    s.placed("light", {{"class", "collimated"}, {"radius", 0.2}, {"power", 100}}, {{0, 1, 0}, {-h, 0, 0, h}});
+    Scene scene = compile_test_scene(s.import());
+    for (const Algorithm algorithm : {Algorithm::forward, Algorithm::bidirectional}) {
+        CAPTURE(algorithm_name(algorithm));
+        const auto parts = measure(scene, algorithm, 64, 64);
+        check_near(figure(parts[front_in], "flux"), 150, 1e-4, 1e-3);
+        check_near(figure(parts[back_out], "flux"), 75, 1e-4, 1e-3);
+        CHECK(figure(parts[front_out], "flux").value < 1e-4);
+        CHECK(figure(parts[back_in], "flux").value < 1e-4);
+    }
+}
+
 TEST_CASE("a lamp's own exitance is pi L, by all algorithms, and through holes of it") {
     SceneBuilder s;
     floor_mesh(2).add_to(s, s.black_emitter(1000));
