@@ -3,7 +3,7 @@
 // that lights are sampled there and vertices connected; forward rays leave light there on their way, which goes on as if nothing
 // had happened. Nothing merges at receptors, since no vertices are stored there.
 //
-// Where a receptor coincides with a surface it lies on top: a forward ray is caught a margin before, from where it goes on.
+// Where a receptor coincides with a surface it lies on top: a forward ray is caught a margin before.
 #include "features/bending.glsl"
 #include "features/surface_meters.glsl"
 #include "features/views.glsl"
@@ -96,14 +96,15 @@ SurfacePoint receptor_point(Path path, Hit hit) {
 void leave_receptor(inout Path path) { path.flags &= ((1u << PATH_PASSED_SHIFT) - 1u) & ~PATH_TO_RECEPTOR; }
 
 #if FORWARD
-// Light goes on from a little before where it was caught.
+// In vacuum the same ray goes on: what lies right behind the receptor it meets as it would have without. What it has crossed of a
+// medium lies behind it: there it goes on from so little before that a surface at the same place is still apart from it.
 void pass_receptor(inout Path path, SurfacePoint p, Hit hit) {
     path.flags |= 1u << (PATH_PASSED_SHIFT + catching_view(path, hit));
-    if (hit.primitive != NO_RECORD) {
-        come_again(path, p, hit);
-        return;
-    }
-    path.origin = p.position - 2.0 * receptor_margin(p.position, distance(p.position, path.origin)) * path.direction;
+    if (path.around.medium == NO_RECORD) return;
+    float way = distance(p.position, path.origin);
+    float height = hit.primitive == NO_RECORD ? 2.0 * receptor_margin(p.position, way) + 2e-6 * SCENE_RADIUS : height_above(p, hit);
+    float cosine = max(abs(dot(path.direction, p.geometric_normal)), 1e-3);
+    path.origin = p.position - min(height / cosine, 0.5 * way) * path.direction;
 }
 
 // The end of an event at a receptor: the shadow ray has no way to go, the path goes on. A macro, since it returns.

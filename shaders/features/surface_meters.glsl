@@ -45,13 +45,9 @@ ReceiverSample caught_at_surface(Path path, View view, Hit hit) {
     return receiver_at_surface(view.receiver, hit.primitive, front, false);
 }
 
-// Lets the path meet once more what has caught it: in vacuum by the same ray, in a medium, which it has crossed, from so little before
-// that the surface is still apart from it.
-void come_again(inout Path path, SurfacePoint p, Hit hit) {
-    if (path.around.medium == NO_RECORD) return;
-    float cosine = max(abs(dot(path.direction, p.geometric_normal)), 1e-3);
-    float height = clearance(primitives[hit.primitive], p.position) + dot(abs(p.geometric_normal), 4.0 * p.error);
-    path.origin = p.position - min(height / cosine, 0.5 * hit.t) * path.direction;
+// How far above what the path has hit it is sure to hit it again, m.
+float height_above(SurfacePoint p, Hit hit) {
+    return clearance(primitives[hit.primitive], p.position) + dot(abs(p.geometric_normal), 4.0 * p.error);
 }
 
 // The path has come to what it has hit: it may be caught at the next hit.
@@ -88,7 +84,7 @@ bool leaves_watched(Path path) { return path.leaves.x != NO_RECORD; }
 #define watching_view(path, hit) NO_RECORD
 #define caught_at_surface(path, view, hit) no_receiver_sample()
 #define forget_watched(path)
-#define come_again(path, p, hit)
+#define height_above(p, hit) 0.0
 #define leave_nothing(path)
 #define leave_primitive(path, primitive, front)
 #define leaves_watched(path) false

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <glm/gtc/quaternion.hpp>
 #include <numbers>
 
 #include "host/error.h"
@@ -292,6 +293,29 @@ TEST_CASE("light passes a meter on a surface; the balance of power knows nothing
     }
     CHECK(a.counters.absorbed / a.counters.emitted ==
           doctest::Approx(b.counters.absorbed / b.counters.emitted).epsilon(0.005));
+}
+
+TEST_CASE("a meter in a plane that lies on a tilted mesh lets no light through it") {
+    const glm::dquat tilt = glm::normalize(glm::dquat(0.92, -0.388, 0.058, 0));
+    const auto place = [](const glm::dquat& q) { return Place{{0.3, 0.2, 0.1}, {q.x, q.y, q.z, q.w}}; };
+    SceneBuilder s;
+    add_box(s, {3, 3, 3}, s.lambertian(0.7), true, at(0, 0, 0));
+    floor_mesh(1).add_to(s, s.lambertian(0.7), place(tilt));
+    watch_last(s);
+    // The y of the mesh is the meter's z.
+    s.placed("receiver", {{"class", "illuminance"}, {"size", {2, 2}}, {"resolution", {1, 1}}},
+             place(tilt * glm::dquat(h, -h, 0, 0)));
+    s.light({{"type", "point"}, {"intensity", 100}}, at(0, 1.4, 0));
+    Scene scene = compile_test_scene(s.import());
+    std::vector<const Receiver*> receivers;
+    for (const Receiver& r : scene.receivers) receivers.push_back(&r);
+    RenderSettings settings;
+    settings.algorithm = Algorithm::forward, settings.forward_paths = 2000;
+    MeasurementRun run(test_device(), scene, receivers, settings);
+    REQUIRE(run.add({0, 64}, [] { return false; }));
+    const Interval on_mesh = figure(parts_of(run.measurement().meters[0])[front_in], "flux"),
+                   in_plane = figures_of(run.measurement().meters[1], {})[0].interval;
+    CHECK(in_plane.value == doctest::Approx(on_mesh.value).epsilon(5e-4));
 }
 
 TEST_CASE(
