@@ -7,6 +7,9 @@
 
 #include "host/error.h"
 #include "host/gltf/gltf.h"
+#include "host/gltf/light_layers.h"
+#include "host/image/atomic_file.h"
+#include "host/render/light_layers.h"
 #include "host/render/views.h"
 #include "host/scene/scene_files.h"
 
@@ -88,6 +91,22 @@ std::vector<const Receiver*> choose_receivers(const Scene& scene, const SceneCho
 
 std::string receiver_unit(const Receiver& receiver) {
     return receiver.info->pixel_unit.empty() ? "cd/m²" : receiver.info->pixel_unit;
+}
+
+std::vector<LightLayer> choose_layers(const Scene& scene, const SceneChoice& choice) {
+    const std::string& asked = choice.layers;
+    if (asked.empty()) return scene.layers;
+    if (asked == "none") return {};
+    if (asked == "lamps") return light_groups(scene);
+    std::string text = asked, place = "--layers";
+    if (asked.front() != '[') {
+        const std::vector<std::byte> bytes = read_whole_file(asked);
+        text.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        place = asked;
+    }
+    const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+    if (json.is_discarded()) fail_input("{}: is no JSON; allowed: lamps, none, a file or an array of layers", place);
+    return read_layers({&json, "", &place});
 }
 
 ImageSize image_size(const Receiver& receiver, const SceneChoice& choice) {

@@ -32,6 +32,9 @@ std::vector<const Receiver*> choose_receivers(const Scene& scene, const SceneCho
 // Of its pixels: "lx", "cd"; of cameras "cd/m²".
 std::string receiver_unit(const Receiver& receiver);
 
+// The layers that are asked for, else those of the scene. Fails with one line where they are none.
+std::vector<LightLayer> choose_layers(const Scene& scene, const SceneChoice& choice);
+
 // As chosen, else 512 rows, and columns by the receiver's aspect ratio.
 ImageSize image_size(const Receiver& receiver, const SceneChoice& choice);
 

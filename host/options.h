@@ -31,6 +31,7 @@ struct SceneChoice {
     PolarizationMode polarization = PolarizationMode::automatic;
     uint32_t spectral_bins = 0;  // of the image, besides its colours; 0 = none
     SampleSequence samples = SampleSequence::sobol;
+    std::string layers;  // of light: "lamps", "none", a file of them or JSON; empty = those of the scene
     std::optional<ImageSize> size;  // else 512 rows, and columns by the camera's aspect ratio
 };
 

@@ -74,7 +74,11 @@ CLI::App* add_measure(CLI::App& app, MeasureOptions& options, MeasureArguments& 
                      "Luminance, cd/m², above which something glares: for UGR (default: 500)")
         ->option_text("L");
     add_shared(*measure, options, arguments.shared,
-               {{"variant"}, {"at"}, {"environment"}, {"algorithm", "How light is traced (default: auto)"}});
+               {{"variant"},
+                {"at"},
+                {"environment"},
+                {"layers", "Also the readings of parts of the light, as for render (default: the scene's)"},
+                {"algorithm", "How light is traced (default: auto)"}});
     measure
         ->add_option("--forward-paths", arguments.forward_paths,
                      "Forward paths a pixel and pass, with a named algorithm that has them (default: 1)")

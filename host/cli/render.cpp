@@ -38,6 +38,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
                 {"variant", "Of the scene's materials, as inspect lists them (default: none)"},
                 {"at", "Moment of the scene's animations (default: as its nodes stand)"},
                 {"environment", "Latitude-longitude image for the scene's surroundings"},
+                {"layers",
+                 "Further layers, of parts of the light: one for each lamp, or as described (default: the scene's)"},
                 {"algorithm", "How light is traced (default: auto)"}});
     render
         ->add_option("--forward-paths", arguments.forward_paths,

@@ -14,6 +14,7 @@ void add_shared(CLI::App& command, SceneChoice& options, SharedArguments& argume
             if (name == known) command.add_option(name, target, option.text)->option_text(value);
         };
         add("--size", arguments.size, "WxH");
+        add("--layers", options.layers, "lamps|none|FILE.json|[…]");
         add("--receiver", options.receiver, "NAME");
         add("--variant", options.variant, "NAME");
         add("--at", arguments.at, "SECONDS");

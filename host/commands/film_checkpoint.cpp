@@ -4,6 +4,7 @@
 #include <set>
 
 #include "host/error.h"
+#include "host/gltf/light_layers.h"
 #include "host/image/atomic_file.h"
 #include "host/image/polarization.h"
 
@@ -21,6 +22,7 @@ FilmShape shape_of(const nlohmann::json& identity, size_t view) {
     shape.height = uint32_t(std::stoul(size.substr(size.find('x') + 1)));
     shape.merging = identity.at("merging");
     shape.stokes = identity.at("stokes");
+    shape.light_layers = identity.at("layers").get<std::vector<std::string>>();
     return shape;
 }
 
@@ -46,7 +48,7 @@ Sums sums_of(Checkpoint& checkpoint, const std::filesystem::path& path) {
     for (size_t v = 0; v < checkpoint.identity.at("size").size(); ++v) {
         const FilmShape& shape = sums.views.emplace_back(shape_of(checkpoint.identity, v));
         film += shape.sums();
-        if (sums.bins > 0) spectra += spectral_sums(shape.pixels(), sums.bins, shape.layers());
+        if (sums.bins > 0) spectra += spectral_sums(shape.pixels(), sums.bins, shape.stokes_layers());
     }
     sums.film = sums_of(checkpoint, path, "film", film);
     if (sums.bins > 0) sums.spectra = sums_of(checkpoint, path, "bins", spectra);
@@ -114,6 +116,8 @@ nlohmann::json render_identity(const nlohmann::json& sources, const RenderOption
                      {"spectral-bins", scene.features.spectral_bins},
                      {"polarization", scene.features.polarization},
                      {"stokes", shape.stokes},
+                     {"layers", shape.light_layers},
+                     {"layer-conditions", to_json(renderer.layers())},
                      {"merging", shape.merging}});
     return identity;
 }
@@ -192,8 +196,8 @@ std::vector<Developed> develop(Checkpoint& checkpoint, const std::filesystem::pa
             }
         if (aovs && has_stokes(image)) add_polarization(image);
         if (sums.bins > 0) {
-            const uint64_t bins = spectral_sums(shape.pixels(), sums.bins, shape.layers());
-            add_spectra(image, sums.spectra.subspan(spectra, bins), sums.bins, shape.layers(),
+            const uint64_t bins = spectral_sums(shape.pixels(), sums.bins, shape.stokes_layers());
+            add_spectra(image, sums.spectra.subspan(spectra, bins), sums.bins, shape.stokes_layers(),
                         checkpoint.passes.count());
             spectra += bins;
         }

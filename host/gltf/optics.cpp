@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "host/gltf/import.h"
+#include "host/gltf/light_layers.h"
 
 namespace etendue {
 namespace {
@@ -145,10 +146,12 @@ void put_film_on_base(GltfImport& import, const JsonAt& at, MaterialDescription&
 void load_root_optics(GltfImport& import) {
     std::optional<JsonAt> optics = find_extension(import.root, "ETD_optics");
     if (!optics) return;
-    only_members(*optics, {"spectra", "media", "environment", "class_files"});
+    only_members(*optics, {"spectra", "media", "environment", "class_files", "layers"});
     load_class_files(import, *optics);
     load_spectra(import, *optics);
     load_media(import, *optics);
+    if (std::optional<JsonAt> layers = find_array(*optics, "layers"))
+        import.scene.layers = read_layers(*layers);
     if (std::optional<JsonAt> environment = find_object(*optics, "environment"))
         import.scene.environment = object_description(import, *environment, {});
 }

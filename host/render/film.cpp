@@ -33,20 +33,24 @@ FilmSums layer_sums(const FilmShape& shape, std::span<const ExactSum> sums, cons
 
 }  // namespace
 
+std::string FilmShape::defines() const {
+    return fmt::format("#define MERGE_VERTICES {:d}\n#define STOKES_IMAGE {:d}\n#define LIGHT_LAYERS {}\n", merging,
+                       stokes, light_layers.size());
+}
+
 Film::Film(Device& device, Scene& scene, const FilmShape& shape, KernelTimings& timings)
     : ends_loops_early_(device.description.max_loop_turns > 0),
       shape_(shape),
       timings_(timings),
       commands_(device),
       sums_(device, shape.sums() * sizeof(ExactSum), "Film") {
-    const std::string defines =
-        fmt::format("#define MERGE_VERTICES {:d}\n#define STOKES_IMAGE {:d}\n", shape.merging, shape.stokes);
     const uint64_t pixels = uint64_t(shape.width) * shape.height;
-    sample_passes_ = uint32_t(std::clamp<uint64_t>(most_samples / pixels, least_passes, most_passes));
+    const uint64_t images = 1 + shape.light_layers.size();
+    sample_passes_ = uint32_t(std::clamp<uint64_t>(most_samples / (pixels * images), least_passes, most_passes));
     samples_ =
         Buffer(device, pixels * shape.layers() * sample_passes_ * (shape.merging ? 2 : 1) * sizeof(glm::vec3),
                "Samples");
-    accumulate_film_ = make_color_kernel(device, scene, "kernels/accumulate_film.comp", buffers(), defines);
+    accumulate_film_ = make_color_kernel(device, scene, "kernels/accumulate_film.comp", buffers(), shape.defines());
 }
 
 BufferTable Film::buffers() const { return {{"Film", &sums_}, {"Samples", &samples_}}; }
@@ -108,7 +112,9 @@ Image develop_film(const FilmShape& shape, std::span<const ExactSum> sums, const
     };
     for (uint32_t layer = 0; layer < shape.layers(); ++layer) {
         const FilmSums film = layer_sums(shape, sums, passes, layer);
-        const std::string name = layer == 0 ? "" : fmt::format("S{}.", layer);
+        const std::string name = layer == 0     ? ""
+                                 : shape.stokes ? fmt::format("S{}.", layer)
+                                                : shape.light_layers[layer - 1] + ".";
         std::vector<glm::vec3> means;
         means.reserve(film.pixels.size());
         for (const FilmPixel& p : film.pixels) means.push_back(mean(film, p));

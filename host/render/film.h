@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "host/gpu/buffer.h"
@@ -20,7 +21,10 @@ struct FilmShape {
     uint32_t width = 0, height = 0;
     bool merging = false;  // its kernels are compiled with MERGE_VERTICES, and it holds what tells the bias
     bool stokes = false;   // with STOKES_IMAGE, and there are S1 to S3, too
-    uint32_t layers() const { return stokes ? 4 : 1; }
+    std::vector<std::string> light_layers = {};  // behind all light, which is their sum; not with `stokes`
+    uint32_t stokes_layers() const { return stokes ? 4 : 1; }
+    uint32_t layers() const { return stokes_layers() + uint32_t(light_layers.size()); }
+    std::string defines() const;  // of kernels that read or write it
     // Of a layer of a pixel: twin of struct FilmHalf in shaders/lib/film.glsl, of the even and the odd
     // passes.
     uint32_t sums_a_layer() const { return merging ? 6 : 4; }
@@ -64,7 +68,8 @@ class Film {
 };
 
 // Mean radiance as R, G, B, and, where asked for, its error (estimate_errors, which takes longer than all
-// else) as error.R, error.G, error.B; S1.R and error.S1.R to S3 likewise.
+// else) as error.R, error.G, error.B; S1.R and error.S1.R to S3 likewise, or NAME.R and error.NAME.R of layers
+// of light.
 Image develop_film(const FilmShape& shape, std::span<const ExactSum> sums, const PassSet& passes,
                    bool errors);
 // Of R, G and B, without developing, which takes longer.

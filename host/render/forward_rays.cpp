@@ -53,10 +53,10 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
     if (techniques.ray_record) ray_record_.emplace(device, scene, all_views(settings), count_);
     if (techniques.connect || techniques.merge) {
         const VertexMap::Shaders shaders = {[&](const std::string& file, const BufferTable& table) {
-                                                return make_kernel(device, scene, file, table);
+                                                return make_kernel(device, scene, file, table, techniques.layer_defines);
                                             },
                                             [&](const std::string& file, const std::string& buffer) {
-                                                return element_bytes(device, scene, file, "", buffer);
+                                                return element_bytes(device, scene, file, techniques.layer_defines, buffer);
                                             }};
         const uint64_t least = scene.features.scattering ? least_vertices_in_media : least_vertices;
         const uint64_t most = std::max(least, uint64_t(count_) * vertices_a_path);
@@ -82,7 +82,7 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
 
 uint64_t ForwardRays::splat_bytes() const {
     return pixel_count(all_views(settings_)) * (scene_.features.spectral ? 32 : 24) *
-           (settings_.stokes ? 4 : 1);
+           (settings_.stokes ? 4 : std::max<uint64_t>(1, techniques_.light_layers));
 }
 
 BufferTable ForwardRays::buffers() const {

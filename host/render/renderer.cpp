@@ -150,6 +150,7 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
       settings_(settings),
       schedule_(settings.schedule),
       views_(device, scene, all_views(settings)),
+      light_layers_(device, scene, settings.layers),
       most_pixels_(views_.pixels()),
       counter_sums_(device, sizeof(CounterSums), "CounterSums"),
       receiver_moves_(scene.receiver_moves),
@@ -173,11 +174,18 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
         settings_.record_rays && techniques.forward &&
         std::any_of(views_.all().begin(), views_.all().end(),
                     [&](const FilmView& view) { return records_rays(scene, view); });
+    techniques.light_layers = uint32_t(light_layers_.names().size());
+    techniques.layer_defines = light_layers_.defines();
+    if (settings_.stokes && !settings.layers.empty())
+        fail_input("layers: images of Stokes vectors have none; --layers none leaves them out");
     film_ = std::make_unique<Film>(
-        device, scene, FilmShape{uint32_t(most_pixels_), 1, techniques.merge, settings_.stokes}, timings_);
+        device, scene,
+        FilmShape{uint32_t(most_pixels_), 1, techniques.merge, settings_.stokes, light_layers_.names()},
+        timings_);
     if (!settings.restarts_first) film_->clear();
     BufferTable film = film_->buffers();
     film.merge(views_.buffers());
+    film.merge(light_layers_.buffers());
     film["CounterSums"] = &counter_sums_;
     scene.features.spectral_bins = scene.features.spectral ? settings.spectral_bins : 0;
     if (scene.features.spectral_bins > 0) {
@@ -326,9 +334,7 @@ void Renderer::read_picture(std::vector<glm::vec3>& picture) {
         BufferTable buffers = film_->buffers();
         buffers["Picture"] = &picture_;
         develop_film_ =
-            make_color_kernel(device_, scene_, "kernels/develop_film.comp", buffers,
-                              fmt::format("#define MERGE_VERTICES {:d}\n#define STOKES_IMAGE {:d}\n",
-                                          film_->shape().merging, film_->shape().stokes));
+            make_color_kernel(device_, scene_, "kernels/develop_film.comp", buffers, film_->shape().defines());
     }
     film_->add_samples();
     const uint32_t pixels = settings_.width * settings_.height;
@@ -386,7 +392,8 @@ FilmState Renderer::state() const {
 void Renderer::add_spectra(Image& image, size_t view) const {
     if (!spectral_film_) return;
     const std::vector<ExactSum> sums = spectral_film_->read();
-    etendue::add_spectra(image, part(sums, view), settings_.spectral_bins, film_->shape().layers(), passes());
+    etendue::add_spectra(image, part(sums, view), settings_.spectral_bins, film_->shape().stokes_layers(),
+                         passes());
 }
 
 CrossingSample Renderer::take_crossings(size_t view) {

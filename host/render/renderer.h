@@ -17,6 +17,7 @@
 #include "host/gpu/kernel.h"
 #include "host/image/image.h"
 #include "host/render/film.h"
+#include "host/render/light_layers.h"
 #include "host/render/modes.h"
 #include "host/render/ray_record.h"
 #include "host/render/spectral_film.h"
@@ -57,6 +58,7 @@ struct RenderSettings {
     uint32_t spectral_bins = 0;  // of a spectral image, where paths carry wavelengths; 0 = none
     bool record_rays = false;    // that cross receivers which record them, where there are forward rays
     bool stokes = false;         // S1 to S3, too, where paths carry polarization
+    std::vector<LightLayer> layers;  // that hold a part of the light (light_layers.h); not with `stokes`
 };
 
 // The first view, and those beside it.
@@ -139,6 +141,7 @@ class Renderer {
     // The mean radiance of the first view alone, developed on the device.
     void read_picture(std::vector<glm::vec3>& picture);
     bool is_stokes() const { return film_->shape().stokes; }  // S1 to S3 are developed, too
+    const std::vector<LightLayer>& layers() const { return settings_.layers; }
     // Adds the spectra of a spectral image, if it is one (add_spectra in spectral_film.h).
     void add_spectra(Image& image, size_t view = 0) const;
     RelativeError relative_error() const;  // of the view where it is greatest
@@ -163,6 +166,7 @@ class Renderer {
     RenderSettings settings_;
     Schedule schedule_;
     Views views_;
+    LightLayers light_layers_;
     uint64_t most_pixels_;
     KernelTimings timings_;
     std::unique_ptr<Film> film_;

@@ -17,6 +17,8 @@ struct Techniques {
     bool stokes = false;         // the film has layers for S1 to S3 (shaders/features/stokes_images.glsl)
     bool several_views = false;  // forward rays serve several receivers (host/render/views.h)
     bool ray_record = false;     // of what crosses some of them (host/render/ray_record.h)
+    uint32_t light_layers = 0;   // … for so many layers of light, with these defines (host/render/light_layers.h)
+    std::string layer_defines;
     std::string backward_defines() const, forward_defines() const;
 };
 

@@ -11,6 +11,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,22 @@ struct TextureDescription {
     bool nearest = false;
 };
 
+// Of events that befall light on its way from a lamp to a receiver: `least` to `most` of these kinds are at
+// these objects. Kinds as `etendue rays` has them: emitted, reflected, refracted, straight, scattered; objects
+// are lamps, nodes, shapes, materials and media, by name. Empty = any.
+struct LayerCondition {
+    std::set<std::string> events, objects;
+    uint32_t least = 1;
+    std::optional<uint32_t> most;  // none = any number
+};
+constexpr uint32_t most_counted_events = 16;
+
+// A layer of images that holds the light which meets all conditions, and those of no layer before.
+struct LightLayer {
+    std::string name;
+    std::vector<LayerCondition> conditions;
+};
+
 // A class file that the scene brings along: {"interface": "surface", "file": "velvet.glsl"}.
 struct ClassFileDescription {
     std::string interface;       // surface, geometry, light, receiver, medium, element
@@ -128,6 +145,7 @@ struct SceneDescription : SceneObjects {
     double animation_seconds = 0;       // the end of its last animation; 0 = it has none
     // Contents of files that stand in the scene file itself, by the names that parameters have for them.
     std::map<std::string, std::string> embedded_files;
+    std::vector<LightLayer> layers;     // of its images, where nobody asks for others
     std::vector<std::string> warnings;  // one line each: what was read but is not modelled
 };
 

@@ -53,6 +53,7 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
 
 Scene SceneCompiler::run() {
     out_.warnings = in_.warnings;
+    out_.layers = in_.layers;
     add_spectrum({glm::vec3(1), {}}, SpectralKind::radiance);  // white light: features/spectrum.glsl
     out_.cache_folder = options_.cache_folder;
     out_.features.independent_samples = options_.samples == SampleSequence::independent;

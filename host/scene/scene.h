@@ -62,9 +62,9 @@ struct Scene {
     // material's), of media by RecordRef.
     std::vector<std::string> material_names, light_names;
     std::map<uint32_t, std::string> medium_names;
-    // Of instances of meshes and of shapes; which of them each primitive of the world is of; those of lights,
+    // Of instances of meshes and of shapes, and their materials'; which of them each primitive of the world is of; those of lights,
     // empty where they have none.
-    std::vector<std::string> placed_names, light_shapes;
+    std::vector<std::string> placed_names, placed_materials, light_shapes;
     std::shared_ptr<const std::vector<uint32_t>> placed;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;
     glm::dvec3 center{0};  // of the device's world coordinates
@@ -74,6 +74,7 @@ struct Scene {
     std::map<std::filesystem::path, std::string> lamp_files;
     // Of lights whose light forward rays alone bring: their names.
     std::vector<std::string> unmet_lights;
+    std::vector<LightLayer> layers;  // that the scene file asks for
     // That records refer to, radiances in units of even_luminance; the first is white light. Empty in
     // colours.
     std::vector<SpectralTable> spectra;

@@ -43,8 +43,13 @@ void SceneCompiler::add_geometry() {
     out_.features.unrolled_traversal = !memory_.unrolled_traversal.empty();
     out_.sources.generated["generated/unrolled_traversal.glsl"] = memory_.unrolled_traversal;
     out_.placed = world.placed;
-    for (const MeshInstance& instance : in_.instances) out_.placed_names.push_back(instance.name);
-    for (const PlacedObject& shape : in_.shapes) out_.placed_names.push_back(shape.name);
+    const auto add_placed = [&](const std::string& name, uint32_t material) {
+        out_.placed_names.push_back(name);
+        out_.placed_materials.push_back(in_.materials[material].name);
+    };
+    for (const MeshInstance& instance : in_.instances)
+        add_placed(instance.name, in_.meshes[instance.mesh].material);
+    for (const PlacedObject& shape : in_.shapes) add_placed(shape.name, shape.material);
     out_.center = world.center;
     out_.radius = world.bounds.empty() ? 0.0f : 0.5f * glm::length(world.bounds.hi - world.bounds.lo);
     out_.triangles = world.triangles, out_.instances = world.instances, out_.shapes = in_.shapes.size();

@@ -3,13 +3,13 @@
 #include "lib/samples.glsl"
 
 #if MERGE_VERTICES && !FORWARD
-void start_bias(inout Path path) { path.bias = Received(0); }
+void start_bias(inout Path path) { path.bias = nothing_collected(); }
 
 // The bias d is the difference of the density estimates that merging makes of the same light vertices with radius r and with
 // r / sqrt(2). A box kernel's bias is c r² + O(r⁴), so d has the mean c r² / 2: half the bias of the pass (Richardson 1911,
 // deferred approach to the limit).
 Sample make_sample(vec3 value, Path path, uint layer) {
-    vec3 d = spectrum_rgb(layer_of(path.bias, layer));
+    vec3 d = spectrum_rgb(film_layer(path.bias, layer));
     return Sample(value, is_finite(d) ? d : vec3(0));
 }
 #else

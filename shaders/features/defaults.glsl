@@ -9,6 +9,7 @@
 //   HAS_SPLATS        forward rays bring light to pixels
 //   SEVERAL_VIEWS     several receivers share the forward rays (features/views.glsl)
 //   RECORD_RAYS       rays are written down where they cross receivers (features/ray_record.glsl)
+//   LIGHT_LAYERS      light is told apart, in so many layers (features/light_layers.glsl), and HAS_LIGHT_LAYERS
 //   STOKES_IMAGE      the film has layers for S1 to S3 (features/stokes_images.glsl)
 #ifndef FORWARD
 #define FORWARD 0
@@ -36,6 +37,12 @@
 #endif
 #ifndef STOKES_IMAGE
 #define STOKES_IMAGE 0
+#endif
+#ifndef LIGHT_LAYERS
+#define LIGHT_LAYERS 0
+#endif
+#ifndef HAS_LIGHT_LAYERS
+#define HAS_LIGHT_LAYERS 0
 #endif
 #ifndef HAS_SPLATS
 #define HAS_SPLATS 0

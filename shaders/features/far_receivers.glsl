@@ -1,5 +1,6 @@
 // Receivers far away see light that leaves the scene: the last ray of a forward path brings it, weighted against connections to
 // them and against backward paths, which alone would have to hit a lamp from afar.
+#include "features/light_layers.glsl"
 #include "features/merging.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
@@ -19,6 +20,7 @@ void reach_far(inout Path path, inout ShadowRay shadow) {
     shadow.direction = path.direction;
     shadow.t_max = ALREADY_THERE;
     carry_polarization(shadow, path);
+    carry_history(shadow, path);
     weigh(shadow, others_of_escape(path, importance, r.pdf));
     shadow.target = pixel_of(view, r.film);
 }

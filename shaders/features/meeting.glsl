@@ -18,14 +18,14 @@ void end_forward_path(uint path_index, Path path) { path_ends[path_index] = path
 #if CONNECT_VERTICES
 #include "stages/connect_vertices.glsl"
 // Adds what the shadow rays of an event bring, one after the other, as all schedules do: a loop, so that the code stands once.
-void trace_shadows(ShadowRay shadow, ShadowRay vertex_shadow, inout Received radiance, inout Counters counters) {
+void trace_shadows(ShadowRay shadow, ShadowRay vertex_shadow, inout Collected radiance, inout Counters counters) {
     for (uint i = 0u; i < 2u; ++i) {
-        radiance += trace_shadow(shadow, counters);
+        collect(radiance, trace_shadow(shadow, counters));
         shadow = vertex_shadow;
     }
 }
 #else
-#define trace_shadows(shadow, vertex_shadow, radiance, counters) radiance += trace_shadow(shadow, counters)
+#define trace_shadows(shadow, vertex_shadow, radiance, counters) collect(radiance, trace_shadow(shadow, counters))
 #include "lib/events.glsl"
 #include "lib/light_vertices.glsl"
 struct Connection {

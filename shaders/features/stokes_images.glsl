@@ -6,12 +6,12 @@
 
 #if STOKES_IMAGE
 #define Received Stokes
-const uint FILM_LAYERS = 4u;
-Spectrum layer_of(Stokes s, uint layer) { return s[layer]; }
+const uint STOKES_LAYERS = 4u;
+Spectrum stokes_layer(Stokes s, uint layer) { return s[layer]; }
 #else
 #define Received Spectrum
-const uint FILM_LAYERS = 1u;
-#define layer_of(received, layer) received
+const uint STOKES_LAYERS = 1u;
+#define stokes_layer(received, layer) received
 #endif
 
 // What paths carry of polarization: forward a Stokes vector, backward the row of S0, and for such images those of S1 to S3, in

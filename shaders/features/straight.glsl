@@ -1,5 +1,6 @@
 // Surfaces that let light pass straight on: alpha, index-matched boundaries, thin glass. Shadow rays go through.
 #include "features/bending.glsl"
+#include "features/light_layers.glsl"
 #include "features/polarization.glsl"
 #include "features/weights.glsl"
 #include "lib/path.glsl"
@@ -36,43 +37,44 @@ const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0;
 
 // What of the ray's contribution reaches its end. Each surface puts the ray a little beside its way, by the error bound along the
 // normal: it is aimed at its end again, or a light that it meets at a grazing angle would hide itself.
-Received follow_shadow_ray(ShadowRay shadow) {
+Brought follow_shadow_ray(ShadowRay shadow) {
     float t_left = shadow.t_max;
     vec3 direction = shadow.direction;
     while (true) {
         Hit hit = find_hit(shadow.origin, direction, t_left);
         bool met = hit.primitive != NO_RECORD;
         pass_medium(shadow, met ? hit.t : t_left);
-        if (!met) return analysed(shadow, weighed(shadow));
+        if (!met) return brought_by(shadow, analysed(shadow, weighed(shadow)));
         SurfacePoint p = locate(hit, shadow.origin, direction);
         Crossing sides = meet_faces(shadow.origin, direction, shadow.around, hit, p);
         if (is_there(sides)) {
             Material m = materials[p.material];
-            if ((m.flags & MATERIAL_OPAQUE) != 0u || meets_crystal(m.surface, sides)) return Received(0);
+            if ((m.flags & MATERIAL_OPAQUE) != 0u || meets_crystal(m.surface, sides)) return nothing_brought();
             ScatteringPoint s = scattering_point(p, direction, sides);
             shadow.contribution *= surface_transparency(s.surface, s.context, s.wo);
             polarize_passage(shadow, s);
-            if (is_black(shadow.contribution)) return Received(0);
+            pass_straight(shadow, hit.primitive, hit.instance);
+            if (is_black(shadow.contribution)) return nothing_brought();
         }
         vec3 origin = origin_behind(shadow.origin, p.position, p.error, p.geometric_normal, direction);
         if (t_left < INFINITY) {
             vec3 left = shadow.origin + t_left * direction - origin;
             t_left = dot(left, direction);
-            if (!(t_left > 0.0)) return analysed(shadow, weighed(shadow));
+            if (!(t_left > 0.0)) return brought_by(shadow, analysed(shadow, weighed(shadow)));
             direction = normalize(left);
         }
         shadow.origin = origin;
         shadow.around = surroundings_towards(sides, p, shadow.direction);
-        if (bends_rays(shadow.around.medium)) return Received(0);
+        if (bends_rays(shadow.around.medium)) return nothing_brought();
     }
 }
 
 #else
 #define origin_of_next(path, p, direction, straight) offset_origin(p.position, p.error, p.geometric_normal, direction)
 
-Received follow_shadow_ray(ShadowRay shadow) {
-    if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return Received(0);
+Brought follow_shadow_ray(ShadowRay shadow) {
+    if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return nothing_brought();
     pass_medium(shadow, shadow.t_max);
-    return analysed(shadow, weighed(shadow));
+    return brought_by(shadow, analysed(shadow, weighed(shadow)));
 }
 #endif

@@ -11,11 +11,11 @@ layout(push_constant) uniform Push {
 #include "lib/wavefront.glsl"
 #include "stages/trace_shadow.glsl"
 
-void bring(ShadowRay shadow, Received brought, inout Counters counters) {
+void bring(ShadowRay shadow, Brought brought, inout Counters counters) {
 #if FORWARD
     if (!is_black(brought) && !add_splat(shadow.target, brought)) counters.non_finite++;
 #else
-    path_states[shadow.target].radiance += brought;
+    collect(path_states[shadow.target].radiance, brought);
 #endif
 }
 
@@ -38,7 +38,8 @@ void main() {
         for (;;) {
             if (is_done(walk)) {
                 if (ray != NO_RECORD && walk.hit.primitive == NO_RECORD)
-                    bring(shadow_rays[ray], analysed(shadow_rays[ray], shadow_rays[ray].contribution), counters);
+                    bring(shadow_rays[ray], brought_by(shadow_rays[ray], analysed(shadow_rays[ray], shadow_rays[ray].contribution)),
+                          counters);
                 if (next >= count) break;
                 ray = first_ray + next;
                 next += stride;

@@ -27,7 +27,7 @@ void main() {
             Hit hit = find_hit(path.origin, path.direction, end);
             ShadowRay shadow;
             alive = scatter_forward_path(path, hit, index, counters, shadow);
-            Received brought = trace_shadow(shadow, counters);
+            Brought brought = trace_shadow(shadow, counters);
             if (!is_black(brought) && !add_splat(shadow.target, brought)) counters.non_finite++;
         }
         if (!alive) {

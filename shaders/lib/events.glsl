@@ -1,5 +1,6 @@
 // What befalls a path at a surface or within a medium, whichever way it goes.
 #include "features/bending.glsl"
+#include "features/light_layers.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
 #include "features/receptors.glsl"
@@ -29,6 +30,7 @@ ShadowRay shadow_ray(Path path, SurfacePoint p, ScatteringPoint s, Scattering pa
     shadow.around = surroundings_towards(s, direction);
     if (bends_rays(shadow.around.medium)) shadow.t_max = 0.0;
     polarize_shadow(shadow, path, s, pair.mueller);
+    turn_history(shadow, path, s);
     weigh(shadow, others);
     weigh_apart(shadow, 0.0);
     return shadow;
@@ -54,6 +56,7 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
 #endif
     path.throughput *= b.weight;
     polarize(path, s, event.next_mueller, direction);
+    go_through(path, s, direction, straight);
     if (!straight) {
         // What goes straight on stays a candidate for light sampling at the event before.
         leave_receptor(path);

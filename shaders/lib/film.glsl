@@ -1,7 +1,7 @@
-// The film: for every pixel and layer (features/stokes_images.glsl) what its samples add up to, in sums that do not depend on
+// The film: for every pixel and layer (features/film_layers.glsl) what its samples add up to, in sums that do not depend on
 // the order of the passes. Even and odd passes, which are independent of each other (lib/sampler.glsl), stand apart: from what
 // they differ by, and from the sums of squares, host/render/film_error.h tells the error.
-#include "features/stokes_images.glsl"
+#include "features/film_layers.glsl"
 #include "lib/exact_sum.glsl"
 #include "lib/member_if.glsl"
 

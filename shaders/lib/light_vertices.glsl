@@ -7,7 +7,7 @@
 const uint POLARIZATION_WORDS = (3u * LANES + 1u) / 2u;
 struct PackedPolarization { uint words[POLARIZATION_WORDS]; };  // features/polarization.glsl
 
-// 64 bytes; 4 more with wavelengths, of which there are four, 4 with bodies that have priorities, 20 or 24 with polarization.
+// 64 bytes; 4 more with wavelengths, of which there are four, 4 with bodies that have priorities or with layers of light, 20 or 24 with polarization.
 struct LightVertex {
     vec3 position;    // m
     float vcm;        // dVCM of Georgiev 2012, "Implementing Vertex Connection and Merging"
@@ -20,6 +20,7 @@ struct LightVertex {
     uint primitive;   // NO_RECORD within a medium
     uint previous;    // light_vertex_link
     MEMBER_IF(HAS_POLARIZATION, PackedPolarization polarization;)
+    MEMBER_IF(HAS_LIGHT_LAYERS, uint history;)     // of the light that arrives
     MEMBER_IF(HAS_PRIORITIES, uint medium_above;)  // on the side of the normal (features/bodies.glsl)
 };
 

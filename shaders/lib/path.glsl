@@ -5,7 +5,7 @@
 #include "lib/bent_step.glsl"
 #include "lib/member_if.glsl"
 #include "lib/sampler.glsl"
-#include "features/stokes_images.glsl"
+#include "features/film_layers.glsl"
 
 // Where the next ray is a step of a bent one (features/bending.glsl).
 struct Bend {
@@ -30,9 +30,10 @@ struct Path {
     MEMBER_IF(HAS_SURFACE_METERS, uvec2 leaves;)  // watched primitive and side that the next ray leaves, and the view that is to
                                                   // know next (features/surface_meters.glsl); NO_RECORD = none
 #else
-    Received radiance;    // collected so far
+    Collected radiance;   // so far
 #endif
     MEMBER_IF(HAS_POLARIZATION, Carried polarization;)  // features/polarization.glsl
+    MEMBER_IF(HAS_LIGHT_LAYERS, uint history;) // features/light_layers.glsl
     MEMBER_IF(HAS_CRYSTALS, uint mode;)        // of the ray, within a crystal (features/crystals.glsl)
     MEMBER_IF(HAS_BENDING, Bend bend;)
     MEMBER_IF(HAS_SCATTERING, float passage;)  // of scattering media since the reference (features/weights.glsl)
@@ -43,7 +44,7 @@ struct Path {
     MEMBER_IF(BIDIRECTIONAL, uint light;)         // where the path started
     MEMBER_IF(BIDIRECTIONAL, vec3 light_normal;)  // of its surface there
 #else
-    MEMBER_IF(MERGE_VERTICES, Received bias;)  // difference of merging with two radii, for the estimate of its bias
+    MEMBER_IF(MERGE_VERTICES, Collected bias;)  // difference of merging with two radii, for the estimate of its bias
 #endif
 };
 
@@ -67,6 +68,7 @@ struct ShadowRay {
     Surroundings around;
     MEMBER_IF(HAS_POLARIZATION, Carried polarization;)
     MEMBER_IF(HAS_POLARIZED_ENDS, Polarization end;)  // of the light that leaves its end
+    MEMBER_IF(HAS_LIGHT_LAYERS, uint history;)
     MEMBER_IF(HAS_SCATTERING, float others;)  // of weigh(): the passage is known once the ray is traced
     MEMBER_IF(BEAMS, float others_apart;)     // that need no passage
 };

@@ -1,5 +1,5 @@
-// The samples of the last passes, pixel by pixel and layer by layer (features/stokes_images.glsl), until they are added to the film.
-#include "features/stokes_images.glsl"
+// The samples of the last passes, pixel by pixel and layer by layer (features/film_layers.glsl), until they are added to the film.
+#include "features/film_layers.glsl"
 #include "lib/member_if.glsl"
 
 struct Sample {

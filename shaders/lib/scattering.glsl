@@ -24,6 +24,7 @@ struct ScatteringPoint {
     SurfaceContext context;
     bool disperses;       // wavelengths part here
     MEMBER_IF(HAS_CRYSTALS, uint mode;)  // of the ray that comes, within a crystal
+    MEMBER_IF(HAS_LIGHT_LAYERS, uint object;)  // into layer_events; of surfaces
     uint phase;           // RecordRef; NO_RECORD at a surface
     float extinction;     // of an average lane, 1/m
 };

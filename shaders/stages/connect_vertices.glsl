@@ -55,6 +55,7 @@ ScatteringPoint forward_point(Connection c, ScatteringPoint s) {
         there = shaded_point(q, -light_direction, crossing_of_vertex(c.y, q.material, around), true);
         take_hero(own);
     }
+    keep_object(there, false, c.y.primitive, c.y.instance);
     if (!is_consistent(there, -c.direction)) flatten(there, -light_direction);
     return there;
 }
@@ -92,6 +93,7 @@ ShadowRay connect_vertices(Path path, SurfacePoint p, ScatteringPoint s, VertexM
     ShadowRay shadow =
         shadow_ray(path, p, s, here, c.direction, c.distance, contribution, (by_backward + by_forward) / CONNECTION_SHARE);
     polarize_end(shadow, c.y, there, away.mueller);
+    come_to_vertex(shadow, c.y, there, light_direction);
     weigh_apart(shadow, merging_apart / CONNECTION_SHARE);
     return shadow;
 }

@@ -2,6 +2,7 @@
 #include "features/bending.glsl"
 #include "features/bias.glsl"
 #include "features/dispersion.glsl"
+#include "features/light_layers.glsl"
 #include "features/polarization.glsl"
 #include "features/start_media.glsl"
 #include "features/surface_meters.glsl"
@@ -24,7 +25,7 @@ Path emit_camera_ray(View view, uint place, uint sample_index, uint seed) {
     path.origin = ray.origin;
     path.direction = ray.direction;
     path.throughput = Spectrum(ray.weight);
-    path.radiance = Received(0);
+    path.radiance = nothing_collected();
     path.reference = ray.origin;
     path.pdf = 0.0;
     path.around = around_ray(view, film);
@@ -33,6 +34,7 @@ Path emit_camera_ray(View view, uint place, uint sample_index, uint seed) {
     if (HAS_RECEPTORS == 1 && ray.at_receptor) path.flags |= PATH_TO_RECEPTOR | (ray.shape << PATH_SHAPE_SHIFT);
     start_hero(path, path.random.pixel_hash >> 8);
     start_rows(path, view.receiver);
+    start_history(path);
     start_mode(path);
     start_bending(path);
     start_passage(path);

@@ -1,6 +1,7 @@
 // Starts a forward path: a light chosen by its power, a ray that it sends. Throughput 0 where there is none.
 #include "features/bending.glsl"
 #include "features/dispersion.glsl"
+#include "features/light_layers.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
 #include "features/recording.glsl"
@@ -30,6 +31,7 @@ Path emit_light_ray(uint index) {
     path.vertices = uvec2(NO_RECORD, 0u);
     start_hero(path, sample_seed(path.random));
     start_stokes(path, light);
+    leave_light(path, light);
     start_mode(path);
     start_bending(path);
     start_passage(path);

@@ -36,7 +36,7 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
     if (free_path < to_surface) length = min(length, free_path + sure);
     // Of the lanes, one of which the free path is sampled for (lib/free_path.glsl).
     Spectrum share = path.throughput / max(dot(path.throughput, Spectrum(1)), 1e-30);
-    Received inner = Received(0), outer = Received(0);
+    Collected inner = nothing_collected(), outer = nothing_collected();
     BeamQuery query;
     float slope;
     merge_radius(path.origin, slope);
@@ -68,12 +68,13 @@ void merge_along(inout Path sum, Path path, float to_surface, float free_path) {
         float weight = mis.merging / (mis.merging + others);
         if (t > sure) weight /= max(dot(share, waited), 1e-30);
         Spectrum brought = passage.transmittance * y.throughput * value * (weight / (PI * square(radius)));
-        Received light =
-            merged_light(brought, path, s, phase_mueller(s.phase, decode_octahedral(y.direction) * s.frame, s.wo), y);
-        if (2.0 * dot(aside, aside) < square(radius)) inner += light;
-        else outer += light;
+        vec3 light_direction = decode_octahedral(y.direction);
+        Received merged = merged_light(brought, path, s, phase_mueller(s.phase, light_direction * s.frame, s.wo), y);
+        Brought light = brought_through(path, s, light_direction, y, merged);
+        if (2.0 * dot(aside, aside) < square(radius)) collect(inner, light);
+        else collect(outer, light);
     }
     Spectrum scale = path.throughput * forward_pass.path_flux;
-    sum.radiance += scaled(inner + outer, scale);
-    sum.bias += scaled(outer - inner, scale);  // as for surfaces (stages/merge_vertices.glsl)
+    add_collected(sum.radiance, scaled(sum_of(inner, outer), scale));
+    add_collected(sum.bias, scaled(difference(outer, inner), scale));  // as for surfaces (stages/merge_vertices.glsl)
 }

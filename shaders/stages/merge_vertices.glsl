@@ -22,12 +22,12 @@ bool lies_on_same(SurfacePoint p, ScatteringPoint s, LightVertex y, float radius
 struct Merging {
     GridQuery query;
     float radius;
-    Received inner, outer;  // of vertices within radius / sqrt(2), and beyond
+    Collected inner, outer;  // of vertices within radius / sqrt(2), and beyond
 };
 
 void begin_merging(out Merging m, SurfacePoint p) {
     m.radius = merge_radius(p.position);
-    m.inner = m.outer = Received(0);
+    m.inner = m.outer = nothing_collected();
     begin_query(m.query, p.position, m.radius);
 }
 
@@ -45,9 +45,9 @@ void merge_vertex(inout Merging m, Path path, SurfacePoint p, ScatteringPoint s,
     float reverse = pair.pdf_reverse * frame_probability(s, light_direction, -path.direction);
     float others = connects(path) * mis.vcm + reverse * mis.vc + CONNECTION_SHARE * y.vcm + pair.pdf * y.vc;
     Spectrum brought = pair.value * y.throughput * (mis.merging / (abs(cosine) * (mis.merging + others)));
-    Received light = merged_light(brought, path, s, pair.mueller, y);
-    if (2.0 * dot(d, d) < square(m.radius)) m.inner += light;
-    else m.outer += light;
+    Brought light = brought_through(path, s, light_direction, y, merged_light(brought, path, s, pair.mueller, y));
+    if (2.0 * dot(d, d) < square(m.radius)) collect(m.inner, light);
+    else collect(m.outer, light);
 }
 
 void end_merging(Merging m, inout Path path, SurfacePoint p, ScatteringPoint s) {
@@ -56,7 +56,7 @@ void end_merging(Merging m, inout Path path, SurfacePoint p, ScatteringPoint s) 
         Spectrum scattering = medium_scattering(s.sides.above.medium, p.position);
         scale = mix(scale / scattering, Spectrum(0), lessThanEqual(scattering, Spectrum(0)));
     }
-    path.radiance += scaled(m.inner + m.outer, scale);
+    add_collected(path.radiance, scaled(sum_of(m.inner, m.outer), scale));
     float inner_share = in_volume(s) ? 2.0 * sqrt(2.0) - 1.0 : 1.0;  // size of the ball or disk over that of the smaller, less one
-    path.bias += scaled(m.outer - inner_share * m.inner, scale);
+    add_collected(path.bias, scaled(difference(m.outer, times(m.inner, inner_share)), scale));
 }

@@ -8,15 +8,15 @@
 
 // `place`: of layer 0 in the samples.
 void record_sample(uint place, uint pixel, Path path, inout Counters counters) {
-    Received radiance = path.radiance;
+    Collected radiance = path.radiance;
     bool finite = true;
-    for (uint layer = 0u; layer < FILM_LAYERS; ++layer) finite = finite && is_finite(spectrum_rgb(layer_of(radiance, layer)));
+    for (uint layer = 0u; layer < FILM_LAYERS; ++layer) finite = finite && is_finite(spectrum_rgb(film_layer(radiance, layer)));
     if (!finite) {
         counters.non_finite++;
-        radiance = Received(0);
+        radiance = nothing_collected();
     }
     add_splats(pixel, radiance);
     add_to_bins(pixel, radiance);
     for (uint layer = 0u; layer < FILM_LAYERS; ++layer)
-        samples[place + layer] = make_sample(spectrum_rgb(layer_of(radiance, layer)), path, layer);
+        samples[place + layer] = make_sample(spectrum_rgb(film_layer(radiance, layer)), path, layer);
 }

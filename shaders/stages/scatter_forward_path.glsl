@@ -26,6 +26,7 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
     shadow = no_shadow_ray();
     SurfacePoint p = a.p;
     ScatteringPoint s = scattering_at(path, a);
+    keep_object(s, a.caught, hit.primitive, hit.instance);
     float flat_part = flat_probability(s, -path.direction);
     if (flat_part > 0.0 && (flat_part >= 1.0 || sample_1d(path.random) < flat_part)) flatten(s, path.direction);
     part_at_interface(path, s.disperses);

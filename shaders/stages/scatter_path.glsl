@@ -23,8 +23,8 @@ Received collect_light(Path path, uint light, LightHit hit) {
 }
 
 // The same of the primitive that is met, or of all that surrounds the scene.
-Received collect_emission(Path path, Arrival a) {
-    Received sum = Received(0);
+Collected collect_emission(Path path, Arrival a) {
+    Collected sum = nothing_collected();
     LightHit hit = LightHit(vec3(0), vec3(0), vec2(0), vec2(0));
     uint light = 0u, end = a.escapes ? uint(INFINITE_LIGHT_COUNT) : 0u;
     if (!a.scatters && !a.escapes) {
@@ -33,7 +33,7 @@ Received collect_emission(Path path, Arrival a) {
         hit = LightHit(a.p.position, a.p.geometric_normal, a.p.uv0, a.p.uv1);
     }
     if (HAS_LIGHTS)
-        for (; light < end; ++light) sum += collect_light(path, light, hit);
+        for (; light < end; ++light) collect(sum, brought_from(path, light, collect_light(path, light, hit)));
     return sum;
 }
 
@@ -56,6 +56,7 @@ ShadowRay connect_light(Path path, SurfacePoint p, ScatteringPoint s, LightSampl
     ShadowRay shadow =
         shadow_ray(path, p, s, pair, l.direction, l.distance, path.throughput * pair.value * l.radiance / l.pdf, others);
     end_at_light(shadow, light);
+    come_to_light(shadow, light);
     return shadow;
 }
 
@@ -67,13 +68,14 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     bool scatters = cross_and_merge(path, hit);
     Arrival a = arrive(path, carried, hit, scatters, counters);
     if (!a.is_event) return a.lives;
-    path.radiance += collect_emission(path, a);
+    add_collected(path.radiance, collect_emission(path, a));
     if (a.escapes) {
         counters.escaped += brightness(path.throughput);
         return false;
     }
     SurfacePoint p = a.p;
     ScatteringPoint s = scattering_at(path, a);
+    keep_object(s, a.caught, hit.primitive, hit.instance);
     part_at_interface(path, s.disperses);
     bool is_delta = is_delta_point(s);
     VertexMis mis = vertex_mis(path, p, s);

@@ -12,6 +12,7 @@ void store_vertex(inout Path path, uint path_index, SurfacePoint p, ScatteringPo
     v.vc = mis.vc;
     v.direction = encode_octahedral(-path.direction);
     keep_polarization(v, path);
+    keep_history(v, path);
     v.normal = in_volume(s) ? path.around.medium : encode_octahedral_16(p.geometric_normal);
     v.instance = hit.instance;
     v.uv = hit.uv;

@@ -2,8 +2,8 @@
 // attenuate it; anything else blocks it, media that bend rays, too.
 #include "features/straight.glsl"
 
-Received trace_shadow(ShadowRay shadow, inout Counters counters) {
-    if (!(shadow.t_max > 0.0)) return Received(0);
+Brought trace_shadow(ShadowRay shadow, inout Counters counters) {
+    if (!(shadow.t_max > 0.0)) return nothing_brought();
     counters.shadow_rays++;
     return follow_shadow_ray(shadow);
 }

@@ -16,6 +16,7 @@ struct Comparison {
     float merge_radius = 0.1f;     // bias of merging grows with its square
     bool stokes = false;           // S0 to S3 are compared
     std::string receiver = "";     // name; empty = the first
+    std::vector<LightLayer> layers = {};  // are compared, too
     bool unconnected = false;      // bidirectional rays whose vertices are not connected, too
 };
 
@@ -51,13 +52,14 @@ inline void check_against_backward(Scene& scene, const Comparison& c) {
     RenderPlan plan;
     plan.width = c.width, plan.height = c.height, plan.seeds = c.seeds;
     plan.merge_radius = c.merge_radius, plan.stokes = c.stokes, plan.receiver = c.receiver;
+    plan.layers = c.layers;
     plan.algorithm = Algorithm::backward, plan.passes = c.backward;
     const Estimates expected = render_estimates(scene, plan);
     const auto check = [&](Algorithm algorithm, uint32_t passes, uint32_t first_seed) {
         if (passes == 0) return;
         plan.algorithm = algorithm, plan.passes = passes, plan.first_seed = first_seed;
         check_agreement(algorithm_name(algorithm), render_estimates(scene, plan), expected, c.tolerance,
-                        c.largest_error, c.stokes ? 4 : 1);
+                        c.largest_error, expected.height / c.height);
     };
     check(Algorithm::forward, c.forward, 1001);
     check(Algorithm::bidirectional, c.bidirectional, 2001);

@@ -205,6 +205,7 @@ RenderSettings settings_of(const Scene& scene, const RenderPlan& plan) {
     settings.merge_radius = plan.merge_radius;
     if (plan.vertex_bytes) settings.vertex_bytes = plan.vertex_bytes;
     settings.stokes = plan.stokes;
+    settings.layers = plan.layers;
     for (const Receiver& receiver : scene.receivers)
         if (settings.receiver == no_record && (plan.receiver.empty() || receiver.name == plan.receiver))
             settings.receiver = receiver.ref;
@@ -230,8 +231,9 @@ void add_counters(RenderCounters& sum, const RenderCounters& counters) {
 Estimates render_estimates(Scene& scene, const RenderPlan& plan) {
     Renderer renderer(test_device(), scene, settings_of(scene, plan));
     Estimates result;
-    const std::vector<std::string> layers =
-        plan.stokes ? std::vector<std::string>{"", "S1.", "S2.", "S3."} : std::vector<std::string>{""};
+    std::vector<std::string> layers = {""};
+    if (plan.stokes) layers = {"", "S1.", "S2.", "S3."};
+    for (const std::string& name : renderer.film_shape().light_layers) layers.push_back(name + ".");
     result.width = plan.width, result.height = plan.height * uint32_t(layers.size()),
     result.seeds = plan.seeds;
     result.mean.assign(3 * size_t(result.width) * result.height, 0.0);

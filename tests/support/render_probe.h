@@ -71,6 +71,7 @@ struct RenderPlan {
     float merge_radius = 1;     // as in RenderSettings
     uint64_t vertex_bytes = 0;  // 0 = as in RenderSettings
     bool stokes = false;        // images of S0 to S3, one below the other
+    std::vector<LightLayer> layers = {};  // images of all light and of these, one below the other
 };
 
 // Means and their standard errors from images of independent seeds. Three values a pixel: R, G, B.
