@@ -91,6 +91,8 @@ std::vector<LightLayer> light_groups(const Scene& scene) {
         if (std::none_of(groups.begin(), groups.end(), is_it))
             groups.push_back({name, {{{"emitted"}, {name}, 1, {}}}});
     }
+    std::sort(groups.begin(), groups.end(),
+              [](const LightLayer& a, const LightLayer& b) { return a.name < b.name; });
     return groups;
 }
 

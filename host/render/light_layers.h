@@ -12,7 +12,7 @@ namespace etendue {
 // Of a film, all told: each takes as much memory as the image itself.
 constexpr size_t most_light_layers = 16;
 
-// A layer for each lamp, by the name of its shape or node, else of its material or light.
+// A layer for each lamp, in alphabetical order: by the name of its shape or node, else of its material or light.
 std::vector<LightLayer> light_groups(const Scene& scene);
 
 class LightLayers {

@@ -80,9 +80,9 @@ SceneBuilder two_lamps(const Lamps& lamps, bool black_mirror = false, bool black
 
 RenderPlan plan_of(Algorithm algorithm, uint32_t first_seed, const std::vector<LightLayer>& layers = {}) {
     RenderPlan plan;
-    plan.width = 16, plan.height = 16, plan.seeds = 12, plan.first_seed = first_seed;
+    plan.width = 16, plan.height = 16, plan.seeds = 8, plan.first_seed = first_seed;
     plan.algorithm = algorithm, plan.layers = layers, plan.merge_radius = 0.2f;
-    plan.passes = algorithm == Algorithm::backward ? 256 : 128;
+    plan.passes = algorithm == Algorithm::backward ? 128 : 64;
     return plan;
 }
 
@@ -126,18 +126,21 @@ TEST_CASE("layers of light sum up to the image, which is the same as without the
             plan.layers = layers;
             const auto fused = render_once(scene, plan, Schedule::fused);
             CAPTURE(name);
-            CAPTURE(algorithm_name(algorithm));
+            const std::string by = algorithm_name(algorithm);
+            CAPTURE(by);
                 REQUIRE(fused.size() == 5);  // with the rest
             double difference = 0, remainder = 0, whole = 0;
             for (size_t i = 0; i < plain[0].size(); ++i) {
-                double sum = 0;
-                for (size_t layer = 1; layer < fused.size(); ++layer) sum += double(fused[layer][i]);
-                const double unit = std::max(double(fused[0][i]), 1e-9);
+                double sum = 0, unit = 1e-9;  // colours of wavelengths may be negative
+                for (size_t layer = 1; layer < fused.size(); ++layer) {
+                    sum += double(fused[layer][i]);
+                    unit += std::fabs(double(fused[layer][i]));
+                }
                 difference = std::max(difference, std::fabs(double(fused[0][i]) - plain[0][i]) / unit);
                 remainder = std::max(remainder, std::fabs(sum - fused[0][i]) / unit);
                 whole += fused[0][i];
             }
-            MESSAGE(name, " ", algorithm_name(algorithm), ": sum off by ", remainder, ", image by ", difference);
+            MESSAGE(std::string(name), " ", by, ": sum off by ", remainder, ", image by ", difference);
             CHECK(whole > 0);
             CHECK(remainder < 1e-5);
             CHECK(difference < 1e-5);
@@ -153,13 +156,13 @@ TEST_CASE("the layer of a lamp is the image by that lamp alone") {
           ball = compile_test_scene(two_lamps({false, true}).import());
     const std::vector<LightLayer> groups = light_groups(both);
     REQUIRE(groups.size() == 2);
-    CHECK(groups[1].name == "ball lamp");
+    CHECK(groups[0].name == "ball lamp");  // in alphabetical order
     for (const Algorithm algorithm : all_algorithms) {
         const Estimates layers = render_estimates(both, plan_of(algorithm, 1, groups));
         REQUIRE(layers.height == 3 * 16);  // and no rest
         const std::string by = algorithm_name(algorithm);
-        check_same(image_of(layers, 1, 16), render_estimates(ceiling, plan_of(algorithm, 1001)), by + ", ceiling");
-        check_same(image_of(layers, 2, 16), render_estimates(ball, plan_of(algorithm, 2001)), by + ", ball");
+        check_same(image_of(layers, 2, 16), render_estimates(ceiling, plan_of(algorithm, 1001)), by + ", ceiling");
+        check_same(image_of(layers, 1, 16), render_estimates(ball, plan_of(algorithm, 2001)), by + ", ball");
     }
 }
 
@@ -208,8 +211,9 @@ TEST_CASE("light that a slab has scattered once is as bright as its integral") {
         const Estimates all = render_estimates(scene, plan);
         const auto mean = [&](uint32_t layer) { return window_mean(image_of(all, layer, 16)); };
         const WindowMean once = mean(3);
-        CAPTURE(algorithm_name(all_algorithms[a]));
-        MESSAGE(algorithm_name(all_algorithms[a]), ": ", once.mean / expected, " +- ", once.standard_error / expected);
+        const std::string by = algorithm_name(all_algorithms[a]);
+        CAPTURE(by);
+        MESSAGE(by, ": ", once.mean / expected, " +- ", once.standard_error / expected);
         REQUIRE(all.height == 7 * 16);
         for (const uint32_t none : {1u, 2u, 6u}) CHECK(mean(none).mean == 0);  // and the rest
         CHECK(std::fabs(once.mean - expected) < 4 * once.standard_error);
@@ -222,7 +226,7 @@ TEST_CASE("light that a slab has scattered once is as bright as its integral") {
 
 TEST_CASE("algorithms agree in every layer of a caustic") {
     Comparison c;
-    c.width = c.height = 16, c.seeds = 12, c.backward = 1024, c.largest_error = 0.1, c.tolerance = 0.01;
+    c.width = c.height = 16, c.seeds = 8, c.backward = 512, c.largest_error = 0.1, c.tolerance = 0.01;
     c.layers = layers_of(json::parse(R"([
         {"name": "caustic", "all": [{"events": ["refracted"], "objects": ["glass sphere"], "times": 2},
                                     {"events": ["reflected"], "times": 1}]},
