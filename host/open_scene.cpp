@@ -105,7 +105,8 @@ std::vector<LightLayer> choose_layers(const Scene& scene, const SceneChoice& cho
         place = asked;
     }
     const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-    if (json.is_discarded()) fail_input("{}: is no JSON; allowed: lamps, none, a file or an array of layers", place);
+    if (json.is_discarded())
+        fail_input("{}: is no JSON; allowed: lamps, none, a file or an array of layers", place);
     return read_layers({&json, "", &place});
 }
 

@@ -31,16 +31,17 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options, RenderArguments& arg
     passes->option_text("N|A:B")->excludes(seconds)->excludes(error);
     seconds->option_text("SEC")->excludes(error);
     error->option_text("E");
-    add_shared(*render, options, arguments.shared,
-               {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
-                {"receiver",
-                 "Cameras and meters to render in one run, by name, or all (default: the scene's first)"},
-                {"variant", "Of the scene's materials, as inspect lists them (default: none)"},
-                {"at", "Moment of the scene's animations (default: as its nodes stand)"},
-                {"environment", "Latitude-longitude image for the scene's surroundings"},
-                {"layers",
-                 "Further layers, of parts of the light: one for each lamp, or as described (default: the scene's)"},
-                {"algorithm", "How light is traced (default: auto)"}});
+    add_shared(
+        *render, options, arguments.shared,
+        {{"size", "Size in pixels (default: 512 rows, columns by the camera's aspect)"},
+         {"receiver",
+          "Cameras and meters to render in one run, by name, or all (default: the scene's first)"},
+         {"variant", "Of the scene's materials, as inspect lists them (default: none)"},
+         {"at", "Moment of the scene's animations (default: as its nodes stand)"},
+         {"environment", "Latitude-longitude image for the scene's surroundings"},
+         {"layers",
+          "Further layers, of parts of the light: one for each lamp, or as described (default: the scene's)"},
+         {"algorithm", "How light is traced (default: auto)"}});
     render
         ->add_option("--forward-paths", arguments.forward_paths,
                      "Forward paths a pixel and pass, with a named algorithm that has them (default: 1)")

@@ -68,6 +68,7 @@ int measure_command(const MeasureOptions& options) {
     settings.vertex_bytes = options.vertex_bytes;
     settings.seed = uint32_t(options.seed);
     settings.spectral_bins = options.spectral_bins;
+    settings.layers = choose_layers(scene, options);
     MeasurementRun run(*opened.device, scene, choose_meters(scene, options), settings);
     Measurement& measurement = run.measurement();
     if (const std::string missed = missed_light(scene, measurement.choice.algorithm); !missed.empty())

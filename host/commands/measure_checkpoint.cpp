@@ -4,6 +4,7 @@
 #include <set>
 
 #include "host/error.h"
+#include "host/gltf/light_layers.h"
 
 namespace etendue {
 namespace {
@@ -25,6 +26,8 @@ void add_array(Checkpoint& checkpoint, const std::string& name, const std::vecto
 
 std::string array_name(size_t meter, const char* what) { return fmt::format("{} of meter {}", what, meter); }
 
+std::string layer_sums(const std::string& layer) { return fmt::format("sums of {}", layer); }
+
 // What changes with the passes.
 void keep(const Measurement& measurement, Checkpoint& checkpoint) {
     nlohmann::json meters = nlohmann::json::array();
@@ -45,6 +48,11 @@ void keep(const Measurement& measurement, Checkpoint& checkpoint) {
                           {"crossings", readings.rays.crossings.size()},
                           {"probing_paths", readings.probing_paths}});
         add_array(checkpoint, array_name(m, "sums"), readings.sums);
+        meters.back()["layers"] = nlohmann::json::array();
+        for (const LayerReadings& layer : readings.layers) {
+            meters.back()["layers"].push_back(layer.name);
+            add_array(checkpoint, array_name(m, layer_sums(layer.name).c_str()), layer.sums);
+        }
         add_array(checkpoint, array_name(m, "places"), readings.meter.places);
         add_array(checkpoint, array_name(m, "spectra"), readings.spectra);
         add_array(checkpoint, array_name(m, "spectra of rows"), readings.row_spectra);
@@ -76,6 +84,7 @@ nlohmann::json measurement_identity(const nlohmann::json& sources, const Measure
                      {"seed", options.seed},
                      {"sampler", scene.features.independent_samples ? "independent" : "sobol"},
                      {"vertex-memory", options.vertex_bytes >> 20},
+                     {"layer-conditions", to_json(run.layers())},
                      {"color", scene.features.spectral ? "spectral" : "rgb"},
                      {"spectral-bins", scene.features.spectral_bins},
                      {"polarization", scene.features.polarization}});
@@ -114,6 +123,10 @@ Measurement measurement_of(Checkpoint& checkpoint, const std::filesystem::path& 
         meter.places = array_of<PixelPlace>(checkpoint, path, array_name(m, "places"), meter.pixels());
         readings.sums =
             array_of<ExactSum>(checkpoint, path, array_name(m, "sums"), meter.pixels() * replicates);
+        for (const std::string name : json.at("layers"))
+            readings.layers.push_back(
+                {name, array_of<ExactSum>(checkpoint, path, array_name(m, layer_sums(name).c_str()),
+                                          meter.pixels() * replicates)});
         readings.spectral_bins = json.at("spectral_bins");
         readings.spectra = array_of<ExactSum>(checkpoint, path, array_name(m, "spectra"),
                                               spectral_sums(meter.pixels(), readings.spectral_bins, 1));
@@ -137,6 +150,9 @@ void add(Measurement& all, const Measurement& part) {
     for (size_t m = 0; m < all.meters.size(); ++m) {
         Readings& readings = all.meters[m];
         merge(std::span(readings.sums), std::span<const ExactSum>(part.meters[m].sums));
+        for (size_t layer = 0; layer < readings.layers.size(); ++layer)
+            merge(std::span(readings.layers[layer].sums),
+                  std::span<const ExactSum>(part.meters[m].layers[layer].sums));
         merge(std::span(readings.spectra), std::span<const ExactSum>(part.meters[m].spectra));
         merge(std::span(readings.row_spectra), std::span<const ExactSum>(part.meters[m].row_spectra));
         readings.rays.add(part.meters[m].rays.crossings, part.meters[m].rays.greatest_key);

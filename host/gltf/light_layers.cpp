@@ -10,9 +10,8 @@ using nlohmann::json;
 const std::initializer_list<const char*> kinds = {"emitted", "reflected", "refracted", "straight",
                                                   "scattered"};
 // Channels of images that are called otherwise.
-const std::set<std::string> taken_names = {"rest",  "error", "albedo", "normal", "depth",
-                                           "S0",    "S1",    "S2",     "S3",     "R",
-                                           "G",     "B"};
+const std::set<std::string> taken_names = {"rest", "error", "albedo", "normal", "depth", "S0",
+                                           "S1",   "S2",    "S3",     "R",      "G",     "B"};
 
 std::set<std::string> names(const JsonAt& object, const char* key) {
     std::set<std::string> set;
@@ -49,9 +48,8 @@ LayerCondition read_condition(const JsonAt& at) {
 }
 
 void check_name(const JsonAt& at, const std::string& name, const std::vector<LightLayer>& others) {
-    if (name.empty() || name.size() > 64 || std::any_of(name.begin(), name.end(), [](unsigned char c) {
-            return c < ' ' || c == 127;
-        }))
+    if (name.empty() || name.size() > 64 ||
+        std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 127; }))
         fail_at(at, "must be 1 to 64 bytes without control characters");
     if (taken_names.contains(name.substr(0, name.find('.'))))
         fail_at(at, "is '{}', which images call something else", name);

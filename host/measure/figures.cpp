@@ -124,6 +124,20 @@ void add_points(std::vector<Figure>& figures, const Meter& meter,
     figures.push_back({fmt::format("min / mean of {} points", points.size()), "", ratio(least, mean), ""});
 }
 
+// `mean`: of all light.
+void add_layer(std::vector<Figure>& figures, const Readings& readings, const LayerReadings& layer,
+               const Series& mean) {
+    const Meter& meter = readings.meter;
+    const Series part = weighted(luminous_values(of_layer(readings, layer)), weights_of(meter));
+    if (meter.has_extent) {
+        Series flux;
+        for (double x : part) flux.push_back(extent_of(meter) * x);
+        figures.push_back({"flux of " + layer.name, "lm", mean_interval(flux), ""});
+    }
+    figures.push_back({"mean of " + layer.name, meter.unit, mean_interval(part), ""});
+    figures.push_back({"share of " + layer.name, "", ratio(part, mean), ""});
+}
+
 }  // namespace
 
 double mean_of(const Series& series) {
@@ -245,6 +259,7 @@ std::vector<Figure> figures_of(const Readings& readings, const std::vector<Meter
     if (!points.empty() && !meter.is_far && meter.pixels() > 1) add_points(figures, meter, values, points);
     std::ranges::move(glare_figures(meter, values, glare_from), std::back_inserter(figures));
     std::ranges::move(color_figures(readings, weights), std::back_inserter(figures));
+    for (const LayerReadings& layer : readings.layers) add_layer(figures, readings, layer, mean);
     return figures;
 }
 

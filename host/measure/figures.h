@@ -61,7 +61,8 @@ constexpr uint32_t least_rendering_bins = 47;
 // colour rendering.
 std::vector<Figure> color_figures(const Readings& readings, const std::vector<double>& weights);
 
-// `points`: for uniformity; empty = none. `glare_from`: see host/measure/glare.h.
+// `points`: for uniformity; empty = none. `glare_from`: see host/measure/glare.h. Layers: the mean of each, its
+// flux and its share of all light.
 std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points,
                                double glare_from = usual_glare_from);
 

@@ -23,10 +23,12 @@ uint32_t seed_of(uint32_t seed, uint32_t replicate) {
 // What one meter reads in the passes that are being made.
 struct Addend {
     std::vector<ExactSum> sums, spectra, row_spectra;
+    std::vector<std::vector<ExactSum>> layers;
     explicit Addend(const Readings& readings)
         : sums(readings.sums.size()),
           spectra(readings.spectra.size()),
-          row_spectra(readings.row_spectra.size()) {}
+          row_spectra(readings.row_spectra.size()),
+          layers(readings.layers.size(), std::vector<ExactSum>(sums.size())) {}
 };
 
 // Renders meters, as many at once as one renderer serves.
@@ -66,6 +68,9 @@ MeasurementRun::MeasurementRun(Device& device, Scene& scene, const std::vector<c
     for (const RenderSettings& settings : settings_of(settings_, views))
         renderers_.push_back(std::make_unique<Renderer>(device, scene, settings));
     measurement_.choice = renderers_.front()->choice();
+    for (Readings& readings : measurement_.meters)
+        for (const std::string& name : renderers_.front()->film_shape().light_layers)
+            readings.layers.push_back({name, std::vector<ExactSum>(readings.sums.size())});
 }
 
 MeasurementRun::~MeasurementRun() = default;
@@ -93,7 +98,12 @@ bool MeasurementRun::add(const PassRange& range, const std::function<bool()>& in
                 Addend& addend = addends[meter];
                 const Readings& readings = measurement_.meters[meter];
                 for (size_t i = 0; i < readings.meter.pixels(); ++i, pixel += stride)
-                    for (size_t at : {size_t(0), half}) merge(addend.sums[i * replicates + k], pixel[at]);
+                    for (size_t at : {size_t(0), half}) {
+                        merge(addend.sums[i * replicates + k], pixel[at]);
+                        for (size_t layer = 0; layer < addend.layers.size(); ++layer)
+                            merge(addend.layers[layer][i * replicates + k],
+                                  pixel[(layer + 1) * 2 * half + at]);
+                    }
                 const size_t triples = spectral_sums(1, readings.spectral_bins, 1);
                 for (size_t i = 0; i < addend.spectra.size(); ++i, ++bins) {
                     const size_t row = i / triples / readings.meter.columns;
@@ -110,6 +120,9 @@ bool MeasurementRun::add(const PassRange& range, const std::function<bool()>& in
         merge(std::span(readings.sums), std::span<const ExactSum>(addends[m].sums));
         merge(std::span(readings.spectra), std::span<const ExactSum>(addends[m].spectra));
         merge(std::span(readings.row_spectra), std::span<const ExactSum>(addends[m].row_spectra));
+        for (size_t layer = 0; layer < readings.layers.size(); ++layer)
+            merge(std::span(readings.layers[layer].sums),
+                  std::span<const ExactSum>(addends[m].layers[layer]));
         readings.passes = measurement_.passes.count() / replicates;
         readings.forward_paths += counters.forward_paths / renderers_.size();
     }
@@ -136,6 +149,7 @@ std::vector<std::string> MeasurementRun::probe_dark_meters() {
         }
     RenderSettings common = settings_;
     common.choice.reset();
+    common.layers.clear();
     common.algorithm = Algorithm::forward;
     std::vector<std::string> reached;
     auto readings = dark.begin();

@@ -35,6 +35,7 @@ class MeasurementRun {
 
     const Measurement& measurement() const { return measurement_; }
     Measurement& measurement() { return measurement_; }
+    const std::vector<LightLayer>& layers() const { return settings_.layers; }
     uint64_t rays() const { return all_rays(measurement_.counters); }
 
   private:

@@ -22,6 +22,25 @@ std::vector<PixelPlace> pixel_places(Device& device, Scene& scene, const Receive
     return buffer.read_array<PixelPlace>(pixels);
 }
 
+void add_means(Image& image, const Readings& readings, const std::string& prefix) {
+    const size_t pixels = readings.meter.pixels();
+    std::vector<glm::vec3> means(pixels), errors(pixels);
+    for (size_t i = 0; i < pixels; ++i) {
+        glm::dvec3 sum(0), squares(0);
+        for (uint32_t k = 0; k < replicates; ++k) {
+            const glm::dvec3 x = value(readings.sums[i * replicates + k]) / double(readings.passes);
+            sum += x, squares += x * x;
+        }
+        const glm::dvec3 mean = sum / double(replicates);
+        const glm::dvec3 spread = glm::max(squares / double(replicates) - mean * mean, glm::dvec3(0));
+        means[i] = mean;
+        errors[i] = glm::sqrt(spread / double(replicates - 1));
+    }
+    for (const auto& [values, name] : {std::pair(&means, prefix), std::pair(&errors, "error." + prefix)})
+        add_channels(image, {name + "R", name + "G", name + "B"},
+                     std::span<const float>(&values->front().x, 3 * pixels), 3);
+}
+
 }  // namespace
 
 Meter describe_meter(Device& device, Scene& scene, const Receiver& receiver) {
@@ -84,25 +103,18 @@ std::vector<double> row_spectrum(const Readings& readings, uint32_t row, uint32_
     return bins;
 }
 
+Readings of_layer(const Readings& readings, const LayerReadings& layer) {
+    Readings alone;
+    alone.meter = readings.meter, alone.sums = layer.sums, alone.passes = readings.passes;
+    return alone;
+}
+
 Image to_image(const Readings& readings) {
-    const size_t pixels = readings.meter.pixels();
-    std::vector<glm::vec3> means(pixels), errors(pixels);
-    for (size_t i = 0; i < pixels; ++i) {
-        glm::dvec3 sum(0), squares(0);
-        for (uint32_t k = 0; k < replicates; ++k) {
-            const glm::dvec3 x = value(readings.sums[i * replicates + k]) / double(readings.passes);
-            sum += x, squares += x * x;
-        }
-        const glm::dvec3 mean = sum / double(replicates);
-        const glm::dvec3 spread = glm::max(squares / double(replicates) - mean * mean, glm::dvec3(0));
-        means[i] = mean;
-        errors[i] = glm::sqrt(spread / double(replicates - 1));
-    }
     Image image;
     image.width = readings.meter.columns, image.height = readings.meter.rows;
-    add_channels(image, {"R", "G", "B"}, std::span<const float>(&means[0].x, 3 * pixels), 3);
-    add_channels(image, {"error.R", "error.G", "error.B"}, std::span<const float>(&errors[0].x, 3 * pixels),
-                 3);
+    add_means(image, readings, "");
+    for (const LayerReadings& layer : readings.layers)
+        add_means(image, of_layer(readings, layer), layer.name + ".");
     image.attributes["pixelUnit"] = readings.meter.unit;
     if (readings.spectral_bins > 0) {
         add_spectra(image, readings.spectra, readings.spectral_bins, 1, readings.passes * replicates);

@@ -41,9 +41,16 @@ Meter describe_meter(Device& device, Scene& scene, const Receiver& receiver);
 double c_angle(const Meter& meter, uint32_t column);
 double gamma_angle(const Meter& meter, uint32_t row);
 
+// Of a part of the light: a layer of the render (host/render/light_layers.h).
+struct LayerReadings {
+    std::string name;
+    std::vector<ExactSum> sums;  // as Readings::sums
+};
+
 struct Readings {
     Meter meter;
-    std::vector<ExactSum> sums;  // pixel after pixel, replicate after replicate
+    std::vector<ExactSum> sums;         // pixel after pixel, replicate after replicate
+    std::vector<LayerReadings> layers;  // whose sum this is; none where nobody asks for them
     // Where paths carry wavelengths and bins are asked for, else 0; see render/spectral_film.h.
     uint32_t spectral_bins = 0;
     std::vector<ExactSum> spectra;      // pixel after pixel, of all replicates together
@@ -62,6 +69,8 @@ struct ReadingsPart {
 };
 std::vector<ReadingsPart> parts_of(const Readings& readings);
 bool has_parts(const Readings& readings);
+// What a layer alone reads, without spectra.
+Readings of_layer(const Readings& readings, const LayerReadings& layer);
 
 using PixelMeans = std::vector<glm::dvec3>;  // linear Rec.709; (1, 1, 1) is one of the meter's units
 PixelMeans replicate_means(const Readings& readings, uint32_t replicate);
@@ -69,8 +78,8 @@ PixelMeans replicate_means(const Readings& readings, uint32_t replicate);
 // The spectrum of a row's mean pixel in a replicate, a value a bin.
 std::vector<double> row_spectrum(const Readings& readings, uint32_t row, uint32_t replicate);
 
-// The mean over all replicates as R, G, B, and its standard error as error.R, error.G, error.B; with bins the
-// spectra, too.
+// The mean over all replicates as R, G, B, and its standard error as error.R, error.G, error.B, the same of
+// layers with their names before; with bins the spectra, too.
 Image to_image(const Readings& readings);
 
 }  // namespace etendue

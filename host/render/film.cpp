@@ -34,8 +34,8 @@ FilmSums layer_sums(const FilmShape& shape, std::span<const ExactSum> sums, cons
 }  // namespace
 
 std::string FilmShape::defines() const {
-    return fmt::format("#define MERGE_VERTICES {:d}\n#define STOKES_IMAGE {:d}\n#define LIGHT_LAYERS {}\n", merging,
-                       stokes, light_layers.size());
+    return fmt::format("#define MERGE_VERTICES {:d}\n#define STOKES_IMAGE {:d}\n#define LIGHT_LAYERS {}\n",
+                       merging, stokes, light_layers.size());
 }
 
 Film::Film(Device& device, Scene& scene, const FilmShape& shape, KernelTimings& timings)
@@ -46,11 +46,13 @@ Film::Film(Device& device, Scene& scene, const FilmShape& shape, KernelTimings& 
       sums_(device, shape.sums() * sizeof(ExactSum), "Film") {
     const uint64_t pixels = uint64_t(shape.width) * shape.height;
     const uint64_t images = 1 + shape.light_layers.size();
-    sample_passes_ = uint32_t(std::clamp<uint64_t>(most_samples / (pixels * images), least_passes, most_passes));
+    sample_passes_ =
+        uint32_t(std::clamp<uint64_t>(most_samples / (pixels * images), least_passes, most_passes));
     samples_ =
         Buffer(device, pixels * shape.layers() * sample_passes_ * (shape.merging ? 2 : 1) * sizeof(glm::vec3),
                "Samples");
-    accumulate_film_ = make_color_kernel(device, scene, "kernels/accumulate_film.comp", buffers(), shape.defines());
+    accumulate_film_ =
+        make_color_kernel(device, scene, "kernels/accumulate_film.comp", buffers(), shape.defines());
 }
 
 BufferTable Film::buffers() const { return {{"Film", &sums_}, {"Samples", &samples_}}; }

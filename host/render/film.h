@@ -68,8 +68,8 @@ class Film {
 };
 
 // Mean radiance as R, G, B, and, where asked for, its error (estimate_errors, which takes longer than all
-// else) as error.R, error.G, error.B; S1.R and error.S1.R to S3 likewise, or NAME.R and error.NAME.R of layers
-// of light.
+// else) as error.R, error.G, error.B; S1.R and error.S1.R to S3 likewise, or NAME.R and error.NAME.R of
+// layers of light.
 Image develop_film(const FilmShape& shape, std::span<const ExactSum> sums, const PassSet& passes,
                    bool errors);
 // Of R, G and B, without developing, which takes longer.

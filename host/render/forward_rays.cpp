@@ -52,12 +52,13 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
     splats_.fill(0);
     if (techniques.ray_record) ray_record_.emplace(device, scene, all_views(settings), count_);
     if (techniques.connect || techniques.merge) {
-        const VertexMap::Shaders shaders = {[&](const std::string& file, const BufferTable& table) {
-                                                return make_kernel(device, scene, file, table, techniques.layer_defines);
-                                            },
-                                            [&](const std::string& file, const std::string& buffer) {
-                                                return element_bytes(device, scene, file, techniques.layer_defines, buffer);
-                                            }};
+        const VertexMap::Shaders shaders = {
+            [&](const std::string& file, const BufferTable& table) {
+                return make_kernel(device, scene, file, table, techniques.layer_defines);
+            },
+            [&](const std::string& file, const std::string& buffer) {
+                return element_bytes(device, scene, file, techniques.layer_defines, buffer);
+            }};
         const uint64_t least = scene.features.scattering ? least_vertices_in_media : least_vertices;
         const uint64_t most = std::max(least, uint64_t(count_) * vertices_a_path);
         const uint64_t room = settings.vertex_bytes / VertexMap::bytes_a_vertex(shaders);

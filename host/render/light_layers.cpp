@@ -38,7 +38,8 @@ struct Fields {
         for (Field& field : all) field.first = std::exchange(next, next + field.bits);
         if (next > 32)
             fail_input(
-                "layers: paths carry 32 bits, and the conditions take {}: one for each that differs in events "
+                "layers: paths carry 32 bits, and the conditions take {}: one for each that differs in "
+                "events "
                 "or objects, and one for each number up to the largest that they count to",
                 next);
     }
@@ -69,7 +70,8 @@ std::string lamp_name(const Scene& scene, size_t light) {
 
 void check_names(const Scene& scene, const std::vector<LightLayer>& layers) {
     Names known;
-    for (const auto* names : {&scene.material_names, &scene.placed_names, &scene.light_names, &scene.light_shapes})
+    for (const auto* names :
+         {&scene.material_names, &scene.placed_names, &scene.light_names, &scene.light_shapes})
         known.insert(names->begin(), names->end());
     for (const auto& [ref, name] : scene.medium_names) known.insert(name);
     known.erase("");
@@ -121,9 +123,8 @@ LightLayers::LightLayers(Device& device, const Scene& scene, const std::vector<L
         lights.push_back(fields.history("emitted", {scene.light_names[i], scene.light_shapes[i]}));
     // Whatever happens to it, bits that are set stay so.
     const bool leaves_none = std::all_of(lights.begin(), lights.end(), [&](uint32_t light) {
-        return std::any_of(tests.begin(), tests.end(), [&](const glm::uvec2& test) {
-            return test.y == 0 && (light & test.x) == test.x;
-        });
+        return std::any_of(tests.begin(), tests.end(),
+                           [&](const glm::uvec2& test) { return test.y == 0 && (light & test.x) == test.x; });
     });
     if (!leaves_none || lights.empty()) names_.push_back("rest");
     if (names_.size() > most_light_layers)

@@ -333,8 +333,8 @@ void Renderer::read_picture(std::vector<glm::vec3>& picture) {
         picture_ = Buffer(device_, most_pixels_ * sizeof(glm::vec3), "Picture");
         BufferTable buffers = film_->buffers();
         buffers["Picture"] = &picture_;
-        develop_film_ =
-            make_color_kernel(device_, scene_, "kernels/develop_film.comp", buffers, film_->shape().defines());
+        develop_film_ = make_color_kernel(device_, scene_, "kernels/develop_film.comp", buffers,
+                                          film_->shape().defines());
     }
     film_->add_samples();
     const uint32_t pixels = settings_.width * settings_.height;

@@ -10,23 +10,22 @@ namespace etendue {
 
 std::string Techniques::backward_defines() const {
     return fmt::format(
-        "#define FORWARD 0\n#define HAS_SPLATS {:d}\n#define FORWARD_ONLY {:d}\n#define BIDIRECTIONAL {:d}\n"
-        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n"
-        "#define STOKES_IMAGE {:d}\n#define SEVERAL_VIEWS {:d}\n",
-        forward, forward && !bidirectional, bidirectional, connect, merge, beams, stokes, several_views) +
+               "#define FORWARD 0\n#define HAS_SPLATS {:d}\n#define FORWARD_ONLY {:d}\n#define BIDIRECTIONAL "
+               "{:d}\n"
+               "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n"
+               "#define STOKES_IMAGE {:d}\n#define SEVERAL_VIEWS {:d}\n",
+               forward, forward && !bidirectional, bidirectional, connect, merge, beams, stokes,
+               several_views) +
            layer_defines;
 }
 
 std::string Techniques::forward_defines() const {
     return fmt::format(
-        "#define FORWARD 1\n#define FORWARD_ONLY 0\n#define BIDIRECTIONAL {:d}\n"
-        "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n"
-        "#define STOKES_IMAGE {:d}
-#define SEVERAL_VIEWS {:d}
-#define RECORD_RAYS {:d}
-",
-        bidirectional, connect, merge, beams, stokes, several_views, ray_record) +
-            layer_defines;
+               "#define FORWARD 1\n#define FORWARD_ONLY 0\n#define BIDIRECTIONAL {:d}\n"
+               "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n"
+               "#define STOKES_IMAGE {:d}\n#define SEVERAL_VIEWS {:d}\n#define RECORD_RAYS {:d}\n",
+               bidirectional, connect, merge, beams, stokes, several_views, ray_record) +
+           layer_defines;
 }
 
 namespace {

@@ -102,8 +102,8 @@ struct TextureDescription {
 };
 
 // Of events that befall light on its way from a lamp to a receiver: `least` to `most` of these kinds are at
-// these objects. Kinds as `etendue rays` has them: emitted, reflected, refracted, straight, scattered; objects
-// are lamps, nodes, shapes, materials and media, by name. Empty = any.
+// these objects. Kinds as `etendue rays` has them: emitted, reflected, refracted, straight, scattered;
+// objects are lamps, nodes, shapes, materials and media, by name. Empty = any.
 struct LayerCondition {
     std::set<std::string> events, objects;
     uint32_t least = 1;

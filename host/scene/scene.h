@@ -62,8 +62,8 @@ struct Scene {
     // material's), of media by RecordRef.
     std::vector<std::string> material_names, light_names;
     std::map<uint32_t, std::string> medium_names;
-    // Of instances of meshes and of shapes, and their materials'; which of them each primitive of the world is of; those of lights,
-    // empty where they have none.
+    // Of instances of meshes and of shapes, and their materials'; which of them each primitive of the world
+    // is of; those of lights, empty where they have none.
     std::vector<std::string> placed_names, placed_materials, light_shapes;
     std::shared_ptr<const std::vector<uint32_t>> placed;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;

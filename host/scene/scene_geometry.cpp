@@ -30,7 +30,8 @@ void SceneCompiler::add_geometry() {
         memory_.light_positions.clear();
         world = build_world(in_, bounds, refs, threads_, memory_.world_features);
         memory_.unrolled_traversal.clear();
-        if (!has_bodies() && !memory_.world_features.twins && !options_.varying.count("places") && device_.description.compiles_choices)
+        if (!has_bodies() && !memory_.world_features.twins && !options_.varying.count("places") &&
+            device_.description.compiles_choices)
             memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
         memory_.world_key = key;
     }

@@ -11,13 +11,13 @@ namespace etendue {
 struct Comparison {
     uint32_t width = 32, height = 24, seeds = 16;
     uint32_t backward = 256, forward = 128, bidirectional = 64;  // passes; 0 = not compared
-    double tolerance = 0.002;      // of the mean over the image, besides four standard errors
-    double largest_error = 0.005;  // that these may have, else the comparison says little
-    float merge_radius = 0.1f;     // bias of merging grows with its square
-    bool stokes = false;           // S0 to S3 are compared
-    std::string receiver = "";     // name; empty = the first
+    double tolerance = 0.002;             // of the mean over the image, besides four standard errors
+    double largest_error = 0.005;         // that these may have, else the comparison says little
+    float merge_radius = 0.1f;            // bias of merging grows with its square
+    bool stokes = false;                  // S0 to S3 are compared
+    std::string receiver = "";            // name; empty = the first
     std::vector<LightLayer> layers = {};  // are compared, too
-    bool unconnected = false;      // bidirectional rays whose vertices are not connected, too
+    bool unconnected = false;             // bidirectional rays whose vertices are not connected, too
 };
 
 // Two sets of images of one scene, by what one is called. Pixels and tiles of 8 x 8 by Student's t over the

@@ -1,6 +1,6 @@
-// Layers that hold only light which has come a certain way: their sum is the image, one of a lamp is the image by
-// that lamp alone, one of light that has not met an object the image with that object black, and light that
-// has been scattered once is as bright as its integral; by rays of every kind.
+// Layers that hold only light which has come a certain way: their sum is the image, one of a lamp is the
+// image by that lamp alone, one of light that has not met an object the image with that object black, and
+// light that has been scattered once is as bright as its integral; by rays of every kind.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -49,7 +49,8 @@ struct Lamps {
     bool ceiling = true, ball = true;
 };
 
-// In haze, over a diffuse floor: a mirror and a ball of glass behind a pane, under a lamp and beside a ball of light.
+// In haze, over a diffuse floor: a mirror and a ball of glass behind a pane, under a lamp and beside a ball
+// of light.
 SceneBuilder two_lamps(const Lamps& lamps, bool black_mirror = false, bool black_glass = false) {
     SceneBuilder s;
     s.medium("haze", {{"scattering", 0.1}, {"absorption", 0.02}, {"phase", lobe_phase(0.4).record}});
@@ -59,13 +60,17 @@ SceneBuilder two_lamps(const Lamps& lamps, bool black_mirror = false, bool black
     add_box(s, {5, 5, 4}, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "haze"}}), false,
             at(0, 0, 1.5));
     name_last(s, "haze box");
-    s.rectangle(1, 1, named(s, "mirror", black_mirror ? absorber : surface({{"class", "conductor"}, {"reflectance", 0.9}})),
-                facing_x(-1, 0, 0.5));
-    s.sphere(0.35,
-             named(s, "ball",
-                   black_glass ? absorber
-                               : json{{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}, {"outside", "haze"}}),
-             at(0.6, 0.1, 0.4));
+    s.rectangle(
+        1, 1,
+        named(s, "mirror", black_mirror ? absorber : surface({{"class", "conductor"}, {"reflectance", 0.9}})),
+        facing_x(-1, 0, 0.5));
+    s.sphere(
+        0.35,
+        named(s, "ball",
+              black_glass
+                  ? absorber
+                  : json{{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}, {"outside", "haze"}}),
+        at(0.6, 0.1, 0.4));
     name_last(s, "glass ball");
     s.rectangle(0.7, 0.7, named(s, "pane", surface({{"class", "thin_dielectric"}})), facing_x(0.1, 0, 0.5));
     const auto lamp = [&](const json& radiance, const char* name) {
@@ -106,7 +111,8 @@ std::vector<std::vector<float>> render_once(Scene& scene, const RenderPlan& plan
     std::vector<std::vector<float>> images;
     const size_t values = 3 * size_t(plan.width) * plan.height;
     for (size_t first = 0; first < e.images[0].size(); first += values)
-        images.emplace_back(e.images[0].begin() + ptrdiff_t(first), e.images[0].begin() + ptrdiff_t(first + values));
+        images.emplace_back(e.images[0].begin() + ptrdiff_t(first),
+                            e.images[0].begin() + ptrdiff_t(first + values));
     return images;
 }
 
@@ -128,7 +134,7 @@ TEST_CASE("layers of light sum up to the image, which is the same as without the
             CAPTURE(name);
             const std::string by = algorithm_name(algorithm);
             CAPTURE(by);
-                REQUIRE(fused.size() == 5);  // with the rest
+            REQUIRE(fused.size() == 5);  // with the rest
             double difference = 0, remainder = 0, whole = 0;
             for (size_t i = 0; i < plain[0].size(); ++i) {
                 double sum = 0, unit = 1e-9;  // colours of wavelengths may be negative
@@ -161,7 +167,8 @@ TEST_CASE("the layer of a lamp is the image by that lamp alone") {
         const Estimates layers = render_estimates(both, plan_of(algorithm, 1, groups));
         REQUIRE(layers.height == 3 * 16);  // and no rest
         const std::string by = algorithm_name(algorithm);
-        check_same(image_of(layers, 2, 16), render_estimates(ceiling, plan_of(algorithm, 1001)), by + ", ceiling");
+        check_same(image_of(layers, 2, 16), render_estimates(ceiling, plan_of(algorithm, 1001)),
+                   by + ", ceiling");
         check_same(image_of(layers, 1, 16), render_estimates(ball, plan_of(algorithm, 2001)), by + ", ball");
     }
 }
@@ -171,19 +178,22 @@ TEST_CASE("light that has not met an object is the image with that object black"
           no_mirror = compile_test_scene(two_lamps({}, true).import()),
           no_glass = compile_test_scene(two_lamps({}, false, true).import());
     // By the name of a material, and by that of a node.
-    const std::vector<LightLayer> mirror = layers_of(
-        json::parse(R"([{"name": "by mirror", "events": ["reflected"], "objects": ["mirror"]}])"));
+    const std::vector<LightLayer> mirror =
+        layers_of(json::parse(R"([{"name": "by mirror", "events": ["reflected"], "objects": ["mirror"]}])"));
     const std::vector<LightLayer> glass =
         layers_of(json::parse(R"([{"name": "without", "without": ["glass ball"]}])"));
     for (const Algorithm algorithm : all_algorithms) {
         const std::string by = algorithm_name(algorithm);
         const Estimates by_mirror = render_estimates(scene, plan_of(algorithm, 1, mirror));
         REQUIRE(by_mirror.height == 3 * 16);
-        CHECK(window_mean(image_of(by_mirror, 1, 16)).mean > 0.02 * window_mean(image_of(by_mirror, 0, 16)).mean);
-        check_same(image_of(by_mirror, 2, 16), render_estimates(no_mirror, plan_of(algorithm, 1001)), by + ", mirror");
+        CHECK(window_mean(image_of(by_mirror, 1, 16)).mean >
+              0.02 * window_mean(image_of(by_mirror, 0, 16)).mean);
+        check_same(image_of(by_mirror, 2, 16), render_estimates(no_mirror, plan_of(algorithm, 1001)),
+                   by + ", mirror");
         const Estimates without = render_estimates(scene, plan_of(algorithm, 3001, glass));
         CHECK(window_mean(image_of(without, 2, 16)).mean > 0.02 * window_mean(image_of(without, 0, 16)).mean);
-        check_same(image_of(without, 1, 16), render_estimates(no_glass, plan_of(algorithm, 2001)), by + ", glass");
+        check_same(image_of(without, 1, 16), render_estimates(no_glass, plan_of(algorithm, 2001)),
+                   by + ", glass");
     }
 }
 
@@ -191,9 +201,11 @@ TEST_CASE("light that a slab has scattered once is as bright as its integral") {
     SceneBuilder s;
     const double scattering = 0.8, absorption = 0.4, sun = 3, extinction = scattering + absorption;
     s.medium("haze", {{"scattering", scattering}, {"absorption", absorption}});
-    add_box(s, {5, 4, 1}, s.material({{"surface", {{"class", "boundary"}}}, {"inside", "haze"}}, {{"name", "skin"}}),
-            false, at(0, 0, -0.5));
-    s.light({{"type", "directional"}, {"intensity", sun}}, {{0, 0, 0}, {0, std::sin(-pi / 12), 0, std::cos(pi / 12)}});
+    add_box(s, {5, 4, 1},
+            s.material({{"surface", {{"class", "boundary"}}}, {"inside", "haze"}}, {{"name", "skin"}}), false,
+            at(0, 0, -0.5));
+    s.light({{"type", "directional"}, {"intensity", sun}},
+            {{0, 0, 0}, {0, std::sin(-pi / 12), 0, std::cos(pi / 12)}});
     s.orthographic(0.5, at(0, 0, 2));
     Scene scene = compile_test_scene(s.import());
     const std::vector<LightLayer> layers = layers_of(json::parse(R"([
@@ -221,6 +233,49 @@ TEST_CASE("light that a slab has scattered once is as bright as its integral") {
         twice[a] = mean(4).mean;
         CHECK(twice[a] > 0.1 * expected);
         CHECK(std::fabs(twice[a] - twice[0]) < 0.03 * twice[0]);
+    }
+}
+
+// A ball of light over a white disk that lies about the lower directions.
+TEST_CASE("receivers far away have layers, too, and receptors of meters are no objects") {
+    SceneBuilder s;
+    const double radius = 0.1, radiance = 5, intensity = radiance * pi * radius * radius;
+    s.sphere(radius, s.black_emitter(radiance), at(0, 0, 0.5));
+    s.shape({{"class", "disk"}, {"radius", 1}},
+            named(s, "disk", surface({{"class", "lambertian"}, {"reflectance", 1}})), at(0, 0, 0));
+    s.placed("receiver", {{"class", "intensity"}, {"resolution", {8, 9}}}, facing_down(0, 0, 0));
+    name_last(s, "gonio");
+    s.placed("receiver", {{"class", "illuminance"}, {"size", {0.01, 0.01}}, {"resolution", {1, 1}}},
+             at(0, 0, 0.1));
+    name_last(s, "meter");
+    Scene scene = compile_test_scene(s.import());
+    const std::vector<LightLayer> layers = layers_of(
+        json::parse(R"([{"name": "direct", "events": ["reflected", "refracted", "straight"], "times": 0},
+                                  {"name": "by disk", "objects": ["disk"], "times": 1}])"));
+    for (const Algorithm algorithm : all_algorithms) {
+        const std::string by = algorithm_name(algorithm);
+        CAPTURE(by);
+        RenderPlan plan = plan_of(algorithm, 1, layers);
+        plan.receiver = "gonio", plan.width = 8, plan.height = 9, plan.forward_paths = 16;
+        const Estimates far = render_estimates(scene, plan);
+        if (algorithm != Algorithm::backward) {  // rays seldom hit a lamp from afar
+            // Upwards all is direct; nearly level directions have the disk's light, too.
+            const Estimates direct = image_of(far, 1, 9), by_disk = image_of(far, 2, 9);
+            const Window upper{0, 6, 8, 2};
+            const WindowMean all = window_mean(image_of(far, 0, 9), upper),
+                             alone = window_mean(direct, upper);
+            CHECK(alone.mean == doctest::Approx(intensity).epsilon(0.02));
+            CHECK(window_mean(by_disk, upper).mean == doctest::Approx(all.mean - alone.mean).epsilon(1e-4));
+            CHECK(window_mean(by_disk, upper).mean > 0.05 * alone.mean);
+            CHECK(window_mean(image_of(far, 3, 9)).mean == 0);
+        }
+        plan.receiver = "meter", plan.width = plan.height = 1, plan.forward_paths = 4096;
+        const Estimates near = render_estimates(scene, plan);
+        const WindowMean lit = window_mean(image_of(near, 1, 1));
+        // A sphere that is seen as a whole, from its centre's distance: E = pi L (r / d)².
+        CHECK(std::fabs(lit.mean - pi * radiance * std::pow(radius / 0.4, 2)) <
+              4 * lit.standard_error + 1e-4);
+        CHECK(window_mean(image_of(near, 2, 1)).mean == 0);
     }
 }
 

@@ -66,11 +66,11 @@ struct RenderPlan {
     Schedule schedule = Schedule::automatic;
     uint32_t first_seed = 1;
     Algorithm algorithm = Algorithm::backward;
-    bool connect = true;        // as in RenderSettings
-    double forward_paths = 1;   // a pixel and pass
-    float merge_radius = 1;     // as in RenderSettings
-    uint64_t vertex_bytes = 0;  // 0 = as in RenderSettings
-    bool stokes = false;        // images of S0 to S3, one below the other
+    bool connect = true;                  // as in RenderSettings
+    double forward_paths = 1;             // a pixel and pass
+    float merge_radius = 1;               // as in RenderSettings
+    uint64_t vertex_bytes = 0;            // 0 = as in RenderSettings
+    bool stokes = false;                  // images of S0 to S3, one below the other
     std::vector<LightLayer> layers = {};  // images of all light and of these, one below the other
 };
 
