@@ -133,6 +133,7 @@ int render_command(const RenderOptions& options) {
     settings.vertex_bytes = options.vertex_bytes;
     settings.spectral_bins = options.spectral_bins;
     settings.layers = choose_layers(scene, options);
+    settings.ledger = !options.stats.empty();
     settings.seed = uint32_t(options.seed ^ (options.seed >> 32));
     Checkpoints checkpoints(options, opened, receivers);
     settings.choice = checkpoints.choice();

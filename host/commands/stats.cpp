@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "host/image/atomic_file.h"
+#include "host/measure/readings.h"
+#include "host/spectra/color.h"
 
 namespace etendue {
 namespace {
@@ -23,8 +25,30 @@ nlohmann::json importance_balance(const RenderCounters& c, double paths) {
              {{"depth_limit", c.depth_limit_lost / paths}, {"non_finite", double(c.non_finite) / paths}}}};
 }
 
-nlohmann::json stats(const RenderOptions& options, const Device& device, const Scene& scene,
-                     const Renderer& renderer, const RelativeError& error, double setup_seconds) {
+// The flux that has come to each meter, lm; it goes on.
+nlohmann::json received_by(Device& device, Scene& scene, const Renderer& renderer) {
+    nlohmann::json received = nlohmann::json::object();
+    for (size_t v = 0; v < renderer.views().size(); ++v)
+        for (const Receiver& receiver : scene.receivers) {
+            if (receiver.ref != renderer.views()[v].receiver || receiver.info->pixel_unit.empty() ||
+                receiver.columns == 0)
+                continue;
+            const Meter meter = describe_meter(device, scene, receiver);
+            if (!meter.has_extent) continue;
+            const Image image = renderer.develop(false, v);
+            double flux = 0;
+            for (size_t i = 0; i < meter.pixels(); ++i)
+                flux +=
+                    meter.places[i].extent * luminance({plane(image, size_t(find_channel(image, "R")))[i],
+                                                        plane(image, size_t(find_channel(image, "G")))[i],
+                                                        plane(image, size_t(find_channel(image, "B")))[i]});
+            received[receiver.name] = flux;
+        }
+    return received;
+}
+
+nlohmann::json stats(const RenderOptions& options, Device& device, Scene& scene, const Renderer& renderer,
+                     const RelativeError& error, double setup_seconds) {
     nlohmann::json kernels = nlohmann::json::array(), timings = nlohmann::json::object();
     double compile_seconds = 0;
     for (const KernelReport& k : scene.kernels) {
@@ -83,6 +107,7 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
                            {"light_power_lm", scene.power},
                            {"importance_balance", importance_balance(c, paths)},
                            {"non_finite_samples", c.non_finite + c.forward_non_finite}};
+    json["received_by"] = received_by(device, scene, renderer);
     json["power_balance"] = c.forward_paths ? flux_balance(c, scene.power) : json["importance_balance"];
     return json;
 }
@@ -94,10 +119,17 @@ nlohmann::json stats(const RenderOptions& options, const Device& device, const S
 nlohmann::json flux_balance(const RenderCounters& c, double power) {
     const double lumens = power / double(c.forward_paths);  // a unit of the counters
     const double escaped = c.forward_escaped * lumens;
+    nlohmann::json absorbed_by = nlohmann::json::object();
+    double told = 0;
+    for (const auto& [name, flux] : c.absorbed_by) absorbed_by[name] = flux * lumens, told += flux;
+    // Of passes that were made without --stats, and gone on from.
+    if (std::fabs(c.absorbed - told) > 1e-4 * c.absorbed)
+        absorbed_by["not told apart"] = (c.absorbed - told) * lumens;
     return {{"unit", "lm"},
             {"emitted", c.emitted * lumens},
             {"received", 0.0},
             {"absorbed", c.absorbed * lumens},
+            {"absorbed_by", absorbed_by},
             {"roulette", c.roulette * lumens},
             {"lost",
              {{"escaped", escaped},
@@ -105,9 +137,8 @@ nlohmann::json flux_balance(const RenderCounters& c, double power) {
               {"non_finite", c.forward_non_finite}}}};
 }
 
-void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
-                 const Scene& scene, const Renderer& renderer, const RelativeError& error,
-                 double setup_seconds) {
+void write_stats(const std::filesystem::path& path, const RenderOptions& options, Device& device,
+                 Scene& scene, const Renderer& renderer, const RelativeError& error, double setup_seconds) {
     const std::string text = stats(options, device, scene, renderer, error, setup_seconds).dump(2) + "\n";
     write_atomically(path, text);
 }

@@ -11,8 +11,7 @@ namespace etendue {
 nlohmann::json flux_balance(const RenderCounters& counters, double power);
 
 // `error`: the estimated relative error of the image; `setup_seconds`: before the first pass.
-void write_stats(const std::filesystem::path& path, const RenderOptions& options, const Device& device,
-                 const Scene& scene, const Renderer& renderer, const RelativeError& error,
-                 double setup_seconds);
+void write_stats(const std::filesystem::path& path, const RenderOptions& options, Device& device,
+                 Scene& scene, const Renderer& renderer, const RelativeError& error, double setup_seconds);
 
 }  // namespace etendue

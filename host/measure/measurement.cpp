@@ -47,6 +47,7 @@ std::vector<RenderSettings> settings_of(const RenderSettings& common, const std:
 MeasurementRun::MeasurementRun(Device& device, Scene& scene, const std::vector<const Receiver*>& receivers,
                                const RenderSettings& common)
     : device_(device), scene_(scene), settings_(common) {
+    settings_.ledger = true;
     measurement_.power = scene.power;
     settings_.record_rays = true;
     std::vector<FilmView> views;
@@ -150,6 +151,7 @@ std::vector<std::string> MeasurementRun::probe_dark_meters() {
     RenderSettings common = settings_;
     common.choice.reset();
     common.layers.clear();
+    common.ledger = false;
     common.algorithm = Algorithm::forward;
     std::vector<std::string> reached;
     auto readings = dark.begin();

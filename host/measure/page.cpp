@@ -23,24 +23,15 @@ std::string shown(const Attribute& attribute) {
     return fmt::format("{:.10g}", std::get<double>(attribute));
 }
 
-// Where the light has gone, by the forward rays.
+// Where the light has gone.
 std::string ledger(const Measurement& measurement) {
-    const RenderCounters& all = measurement.counters;
-    if (all.forward_paths == 0) return "";
-    const double lumens = measurement.power / double(all.forward_paths);
+    const std::vector<BalanceLine> lines = balance_of(measurement);
+    if (lines.empty()) return "";
     Table table = {{"light", "lm", "share of the emitted", ""}};
-    const auto row = [&](const char* name, double flux, const char* text) {
-        table.push_back({name, fmt::format("{:.6g}", flux * lumens),
-                         all.emitted > 0 ? fmt::format("{:.4f} %", 100 * flux / all.emitted) : "–", text});
-    };
-    row("emitted", all.emitted, "by forward rays");
-    row("absorbed", all.absorbed, "by surfaces and media");
-    row("escaped", all.forward_escaped, "left the scene");
-    row("lost", all.forward_depth_limit_lost, "at the depth limit");
-    row("roulette", all.roulette, "taken by Russian roulette less what it gave back: noise around 0");
-    row("difference",
-        all.emitted - all.absorbed - all.forward_escaped - all.forward_depth_limit_lost - all.roulette,
-        "rounding");
+    const double emitted = lines.front().flux;
+    for (const BalanceLine& line : lines)
+        table.push_back({line.name, fmt::format("{:.6g}", line.flux),
+                         emitted > 0 ? fmt::format("{:.4f} %", 100 * line.flux / emitted) : "–", line.text});
     return "<h2>Balance of power</h2>\n" + as_html(table) +
            "<p>Meters take no light: what they read passes on and ends in one of these lines.</p>\n";
 }

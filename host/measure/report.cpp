@@ -138,6 +138,14 @@ std::vector<std::string> write_report(const ReportOptions& options, const Measur
     outputs.write([&] {
         write_atomically(options.folder / "figures.csv", as_csv(all_figures(measurement, options)));
     });
+    if (const auto lines = balance_of(measurement); !lines.empty()) {
+        Table table = {{"light", "lm", "meaning"}};
+        for (const BalanceLine& line : lines)
+            table.push_back({line.name, fmt::format("{:.9g}", line.flux), line.text});
+        outputs.write([&] { write_atomically(options.folder / "balance.csv", as_csv(table)); });
+    } else {
+        fs::remove(options.folder / "balance.csv");  // of an earlier report
+    }
     std::string script;
     for (size_t m = 0; m < names.size(); ++m) {
         const Readings& readings = measurement.meters[m];

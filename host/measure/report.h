@@ -1,8 +1,9 @@
 // The report of a measurement: a folder with
 //   index.html               a page of its own: figures, maps, sections, polar diagrams, the balance of power
 //   figures.csv              every figure of every meter, with its interval
-//   METER.exr, METER.csv     each pixel and its standard error; of a meter on a surface the table is by
-//   triangle METER.ies, METER.ldt     of intensities, as lamps are published (LM-63-2019, EULUMDAT)
+//   balance.csv              where the light has gone, by material, where forward rays tell
+//   METER.exr, METER.csv     each pixel and its standard error; of a meter on a surface the table is by triangle
+//   METER.ies, METER.ldt     of intensities, as lamps are published (LM-63-2019, EULUMDAT)
 //   METER.tm25ray            the rays that a receiver has recorded (TM-25)
 //   METER.map.png            in false colours with isolines
 //   METER.sections.svg       through the middle, with the 95 % interval; of intensities METER.polar.svg
@@ -46,6 +47,16 @@ IntensityDistribution intensity_distribution(const Readings& readings);
 
 // What gnuplot is to draw of a meter; the files' names begin with `stem`.
 std::string plots_of(const Readings& readings, const std::filesystem::path& stem);
+
+// Where the light has gone, in lm: emitted = absorbed + escaped + lost + roulette + difference. Lines
+// "absorbed by …" are parts of absorbed; meters take no light, so that what they received is in one of the
+// others, too. Empty where there were no forward rays.
+struct BalanceLine {
+    std::string name;
+    double flux;
+    std::string text;
+};
+std::vector<BalanceLine> balance_of(const Measurement& measurement);
 
 // The page; it holds the plots that are in the folder.
 std::string page_of(const ReportOptions& options, const Measurement& measurement);

@@ -41,6 +41,7 @@ Pilot run_pilot(Device& device, Scene& scene, RenderSettings settings, Algorithm
     settings.spectral_bins = 0;
     settings.stokes = false;
     settings.layers.clear();
+    settings.ledger = false;
     settings.seed = ~settings.seed;  // independent of the image to come
     Renderer renderer(device, scene, settings);
     for (uint32_t i = 0; i < pilot_passes; ++i) {

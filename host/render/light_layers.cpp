@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "host/error.h"
+#include "host/render/media_places.h"
 
 namespace etendue {
 namespace {
@@ -138,15 +139,11 @@ LightLayers::LightLayers(Device& device, const Scene& scene, const std::vector<L
     }
     std::vector<uint32_t> objects;
     for (const uint32_t placed : *scene.placed) objects.push_back(placed + 1);
-    uint32_t stride = 1, tags = 1;
-    for (const auto& [ref, name] : scene.medium_names) {
-        stride = std::max(stride, (ref & 0xFFFFFF) + 1);
-        tags = std::max(tags, (ref >> 24) + 1);
-    }
-    std::vector<uint32_t> media(size_t(1) + stride * tags, 0);
-    media[0] = stride;
+    const MediaPlaces places(scene);
+    std::vector<uint32_t> media(1 + places.count(), 0);
+    media[0] = places.stride;
     for (const auto& [ref, name] : scene.medium_names)
-        media[1 + (ref >> 24) * stride + (ref & 0xFFFFFF)] = fields.history("scattered", {name});
+        media[1 + places.of(ref)] = fields.history("scattered", {name});
 
     tests_ = create_buffer(device, tests, "LayerTests");
     lights_ = create_buffer(device, lights, "LayerLights");

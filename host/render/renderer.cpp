@@ -78,6 +78,7 @@ uint64_t all_rays(const RenderCounters& c) {
 nlohmann::json to_json(const RenderCounters& counters) {
     nlohmann::json json;
     visit_counters(counters, [&](const char* name, auto value) { json[name] = value; });
+    if (!counters.absorbed_by.empty()) json["absorbed_by"] = counters.absorbed_by;
     return json;
 }
 
@@ -99,6 +100,7 @@ void add(RenderCounters& counters, const RenderCounters& more) {
             value += counts[count++];
     });
     counters.forward_paths_a_pass = paths_a_pass;
+    for (const auto& [name, flux] : more.absorbed_by) counters.absorbed_by[name] += flux;
 }
 
 RenderCounters counters_from_json(const nlohmann::json& json) {
@@ -106,6 +108,7 @@ RenderCounters counters_from_json(const nlohmann::json& json) {
     visit_counters(counters, [&](const char* name, auto& value) {
         value = json.value(name, std::decay_t<decltype(value)>{});
     });
+    counters.absorbed_by = json.value("absorbed_by", decltype(counters.absorbed_by){});
     return counters;
 }
 
@@ -187,6 +190,11 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     film.merge(views_.buffers());
     film.merge(light_layers_.buffers());
     film["CounterSums"] = &counter_sums_;
+    techniques.ledger = settings_.ledger && techniques.forward;
+    if (techniques.ledger) {
+        ledger_.emplace(device, scene);
+        film.merge(ledger_->buffers());
+    }
     scene.features.spectral_bins = scene.features.spectral ? settings.spectral_bins : 0;
     if (scene.features.spectral_bins > 0) {
         spectral_film_.emplace(device, uint32_t(most_pixels_), settings.spectral_bins, settings_.stokes);
@@ -225,7 +233,7 @@ bool Renderer::render_passes(uint32_t count) {
     for (uint64_t left = count; left > 0;) {
         const PassRange range = passes_.next_missing(first_pass_, left);
         if (forward_ && forward_->find_fitting(commands_, range.first, spectra_, settings_.seed, timings_))
-            counter_sums_.fill(0);
+            clear_counter_sums();
         const auto start = std::chrono::steady_clock::now();
         if (!pipeline_->run(commands_, range.first, uint32_t(range.count()), timings_)) return false;
         passes_.add(range);
@@ -266,7 +274,7 @@ void Renderer::restart(uint32_t seed, const FilmView& view) {
     last_pass_seconds_ = 0;
     film_->clear();
     if (spectral_film_) spectral_film_->clear();
-    counter_sums_.fill(0);
+    clear_counter_sums();
     if (forward_) forward_->restart(settings_);
     counters_ = {};
     passes_ = {};
@@ -275,6 +283,11 @@ void Renderer::restart(uint32_t seed, const FilmView& view) {
 uint32_t Renderer::passes_in(double seconds) const {
     if (last_pass_seconds_ <= 0) return 1;
     return uint32_t(std::clamp(seconds / last_pass_seconds_, 1.0, 4096.0));
+}
+
+void Renderer::clear_counter_sums() {
+    counter_sums_.fill(0);
+    if (ledger_) ledger_->take();
 }
 
 void Renderer::read_counters() {
@@ -299,6 +312,8 @@ void Renderer::read_counters() {
     counters_.emitted += sums.flux_sum(4);
     counters_.absorbed += sums.flux_sum(5);
     counters_.roulette += sums.flux_sum(6);
+    if (ledger_)
+        for (const auto& [name, flux] : ledger_->take()) counters_.absorbed_by[name] += flux;
 }
 
 void Renderer::add_aovs(Image& image, uint32_t count, size_t view) {

@@ -8,6 +8,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "host/image/image.h"
 #include "host/render/film.h"
 #include "host/render/light_layers.h"
+#include "host/render/power_ledger.h"
 #include "host/render/modes.h"
 #include "host/render/ray_record.h"
 #include "host/render/spectral_film.h"
@@ -59,6 +61,7 @@ struct RenderSettings {
     bool record_rays = false;    // that cross receivers which record them, where there are forward rays
     bool stokes = false;         // S1 to S3, too, where paths carry polarization
     std::vector<LightLayer> layers;  // that hold a part of the light (light_layers.h); not with `stokes`
+    bool ledger = false;             // forward rays tell what each material has absorbed
 };
 
 // The first view, and those beside it.
@@ -75,6 +78,7 @@ struct RenderCounters {
     uint64_t split_passes = 0;  // whose forward vertices did not fit, and that went on with fewer paths
     uint64_t forward_paths_a_pass = 0;  // of the first one: fewer where vertices did not fit
     double emitted = 0, absorbed = 0, forward_escaped = 0, forward_depth_limit_lost = 0;
+    std::map<std::string, double> absorbed_by;  // … of `absorbed`: PowerLedger, where somebody asks
     double roulette = 0;  // what Russian roulette took, less what it gave to the survivors
 };
 uint64_t all_rays(const RenderCounters& counters);
@@ -158,6 +162,7 @@ class Renderer {
     struct FusedPipeline;
     struct WavefrontPipeline;
     void read_counters();
+    void clear_counter_sums();
     // Of a view, of the sums of all.
     std::span<const ExactSum> part(std::span<const ExactSum> sums, size_t view) const;
     Device& device_;
@@ -172,6 +177,7 @@ class Renderer {
     std::unique_ptr<Film> film_;
     std::optional<SpectralFilm> spectral_film_;
     Buffer counter_sums_;
+    std::optional<PowerLedger> ledger_;
     std::unique_ptr<StartMedia> start_media_;
     uint64_t receiver_moves_;  // of the scene, that start_media_ knows of
     SpectralPasses spectra_;

@@ -21,10 +21,11 @@ std::string Techniques::backward_defines() const {
 
 std::string Techniques::forward_defines() const {
     return fmt::format(
-               "#define FORWARD 1\n#define FORWARD_ONLY 0\n#define BIDIRECTIONAL {:d}\n"
+               "#define FORWARD 1\n#define FORWARD_ONLY 0\n#define HAS_POWER_LEDGER {:d}\n#define "
+               "BIDIRECTIONAL {:d}\n"
                "#define CONNECT_VERTICES {:d}\n#define MERGE_VERTICES {:d}\n#define BEAMS {:d}\n"
                "#define STOKES_IMAGE {:d}\n#define SEVERAL_VIEWS {:d}\n#define RECORD_RAYS {:d}\n",
-               bidirectional, connect, merge, beams, stokes, several_views, ray_record) +
+               ledger, bidirectional, connect, merge, beams, stokes, several_views, ray_record) +
            layer_defines;
 }
 

@@ -19,6 +19,7 @@ struct Techniques {
     bool ray_record = false;     // of what crosses some of them (host/render/ray_record.h)
     uint32_t light_layers = 0;   // … for so many layers of light, with these defines (host/render/light_layers.h)
     std::string layer_defines;
+    bool ledger = false;  // forward rays tell what each material has absorbed
     std::string backward_defines() const, forward_defines() const;
 };
 

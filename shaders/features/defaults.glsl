@@ -10,6 +10,7 @@
 //   SEVERAL_VIEWS     several receivers share the forward rays (features/views.glsl)
 //   RECORD_RAYS       rays are written down where they cross receivers (features/ray_record.glsl)
 //   LIGHT_LAYERS      light is told apart, in so many layers (features/light_layers.glsl), and HAS_LIGHT_LAYERS
+//   HAS_POWER_LEDGER  forward rays tell what each material has absorbed (features/power_ledger.glsl)
 //   STOKES_IMAGE      the film has layers for S1 to S3 (features/stokes_images.glsl)
 #ifndef FORWARD
 #define FORWARD 0
@@ -43,6 +44,9 @@
 #endif
 #ifndef HAS_LIGHT_LAYERS
 #define HAS_LIGHT_LAYERS 0
+#endif
+#ifndef HAS_POWER_LEDGER
+#define HAS_POWER_LEDGER 0
 #endif
 #ifndef HAS_SPLATS
 #define HAS_SPLATS 0

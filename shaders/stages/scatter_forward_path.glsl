@@ -1,6 +1,7 @@
 // One event of a forward path: what the ray meets is crossed, connected to the receiver, stored, and scattered from.
 #include "features/far_receivers.glsl"
 #include "features/meeting.glsl"
+#include "features/power_ledger.glsl"
 #include "features/ray_record.glsl"
 #include "features/surface_exitance.glsl"
 #include "lib/events.glsl"
@@ -61,14 +62,17 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
     if (leave_surface(path, shadow)) return true;
     float carried = luminance(path.throughput);
     Spectrum before = path.throughput;
+    OPEN_LEDGER(entry, path)
     bool scatters = cross_medium(path, hit);
     Arrival a = arrive(path, before, hit, scatters, counters);
+    charge_medium(entry, luminance(path.throughput));
     bool is_event = a.is_event && !a.escapes, goes_on = a.lives;
     uint kind = EVENT_NONE;
     if (is_event) goes_on = scatter_forward(path, a, hit, path_index, kind, shadow);
     // What is left of the light; what escapes or is cut here is counted as such.
     float left = is_event && !goes_on ? 0.0 : luminance(path.throughput);
     counters.absorbed += carried - left;
+    charge_event(entry, a.p.material, left);
     if (a.is_event && a.escapes) {
         counters.escaped += left;
         reach_far(path, shadow);

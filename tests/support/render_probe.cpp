@@ -218,6 +218,7 @@ void add_counters(RenderCounters& sum, const RenderCounters& counters) {
     json total = to_json(sum);
     const json added = to_json(counters);
     for (const auto& [name, value] : added.items()) {
+        if (value.is_object()) continue;
         if (value.is_number_float())
             total[name] = total[name].get<double>() + value.get<double>();
         else
