@@ -289,3 +289,29 @@ TEST_CASE("algorithms agree in every layer of a caustic") {
     Scene scene = compile_test_scene(import_gltf(source_path("scenes/caustic_box.gltf")));
     check_against_backward(scene, c);
 }
+
+// Under a ball of glass, seen in a mirror: both ways together the light gets there by merging for the most
+// part.
+TEST_CASE("algorithms agree in the layer of a caustic that is seen in a mirror") {
+    SceneBuilder s;
+    s.medium("glass", {{"ior", 1.5}});
+    s.rectangle(2, 2, named(s, "floor", surface({{"class", "lambertian"}, {"reflectance", 0.7}})),
+                at(0, 0, 0));
+    s.sphere(0.2, named(s, "ball", {{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}),
+             at(0, 0, 0.45));
+    s.sphere(0.3, s.black_emitter(20), at(0, 0, 1.7));
+    const double half =
+        -0.5 * std::atan2(0.8, 0.4);  // it turns -z to (-0.8, 0, -0.6), where the ball's shadow is
+    s.rectangle(1, 1, named(s, "mirror", surface({{"class", "conductor"}, {"reflectance", 0.9}})),
+                {{1.6, 0, 1.2}, {0, std::sin(half), 0, std::cos(half)}});
+    s.orthographic(0.2, at(1.6, 0, 3));
+    Scene scene = compile_test_scene(s.import());
+    Comparison c;
+    c.width = c.height = 16, c.seeds = 8, c.forward = 0, c.backward = 4096, c.bidirectional = 512;
+    c.largest_error = 0.03, c.tolerance = 0.01;
+    c.layers = layers_of(json::parse(R"([{"name": "caustic", "all": [
+        {"events": ["refracted"], "objects": ["ball"], "times": 2},
+        {"events": ["reflected"], "objects": ["floor"], "times": 1},
+        {"events": ["reflected"], "objects": ["mirror"], "times": 1}]}])"));
+    check_against_backward(scene, c);
+}
