@@ -304,14 +304,21 @@ TEST_CASE("algorithms agree in the layer of a caustic that is seen in a mirror")
         -0.5 * std::atan2(0.8, 0.4);  // it turns -z to (-0.8, 0, -0.6), where the ball's shadow is
     s.rectangle(1, 1, named(s, "mirror", surface({{"class", "conductor"}, {"reflectance", 0.9}})),
                 {{1.6, 0, 1.2}, {0, std::sin(half), 0, std::cos(half)}});
-    s.orthographic(0.2, at(1.6, 0, 3));
+    s.orthographic(0.1, at(1.6, 0, 3));
     Scene scene = compile_test_scene(s.import());
     Comparison c;
     c.width = c.height = 16, c.seeds = 8, c.forward = 0, c.backward = 4096, c.bidirectional = 512;
     c.largest_error = 0.03, c.tolerance = 0.01;
-    c.layers = layers_of(json::parse(R"([{"name": "caustic", "all": [
+    c.layers =
+        layers_of(json::parse(R"([{"name": "floorless", "without": ["floor"]}, {"name": "caustic", "all": [
         {"events": ["refracted"], "objects": ["ball"], "times": 2},
         {"events": ["reflected"], "objects": ["floor"], "times": 1},
         {"events": ["reflected"], "objects": ["mirror"], "times": 1}]}])"));
+    for (const Algorithm algorithm : all_algorithms) {
+        const Estimates all = render_estimates(scene, plan_of(algorithm, 1, c.layers));
+        CHECK(window_mean(image_of(all, 1, 16)).mean == 0);  // there is nothing else to see in the mirror
+        CHECK(window_mean(image_of(all, 2, 16)).mean > 0);
+    }
+    c.layers.erase(c.layers.begin());
     check_against_backward(scene, c);
 }
