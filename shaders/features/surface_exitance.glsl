@@ -27,7 +27,7 @@ bool leave_surface(inout Path path, inout ShadowRay shadow) {
 }
 
 // Of a path that starts at a light: the triangle that it is.
-void leave_light(inout Path path, uint light, bool front) {
+void leave_emitter(inout Path path, uint light, bool front) {
     leave_nothing(path);
 #ifdef TAG_area
     if (record_tag(lights[light]) == uint(TAG_area)) leave_primitive(path, area_record(record_index(lights[light])).primitive, front);
@@ -35,5 +35,5 @@ void leave_light(inout Path path, uint light, bool front) {
 }
 #else
 #define leave_surface(path, shadow) false
-#define leave_light(path, light, front)
+#define leave_emitter(path, light, front)
 #endif

@@ -36,7 +36,7 @@ Path emit_light_ray(uint index) {
     start_bending(path);
     start_passage(path);
     start_forward_weights(path, density, ray.is_delta, light, ray.normal);
-    leave_light(path, light, ray.front);
+    leave_emitter(path, light, ray.front);
     record_light(light);
     return path;
 }
