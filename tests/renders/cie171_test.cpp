@@ -309,6 +309,31 @@ TEST_CASE("CIE 171, 5.6: light that a diffuse plate reflects") {
     }
 }
 
+// The same behind a black wall that hides the near part of the plate: what is seen over its edge is a
+// rectangle again. (The values that the report prints for 5.7 are known to be wrong.)
+TEST_CASE("CIE 171, 5.7: light that a diffuse plate reflects past an obstruction") {
+    constexpr double wall = -0.6, edge = 0.35;
+    SceneBuilder s;
+    s.rectangle(2, 1, s.lambertian(0.8), facing_up(0, 0, 0));
+    s.rectangle(20, 2, s.surface({{"class", "absorber"}}), at(0, edge - 1, wall));
+    s.light({{"type", "directional"}, {"intensity", 1000}}, facing_up(0, 0, 0));
+    const glm::dvec3 points[] = {{0, 0.5, -0.75}, {0.7, 1, -1}, {1.2, 0.45, -0.65}};
+    for (size_t i = 0; i < 3; ++i)
+        add_receiver(s, std::to_string(i), small_meter(), at(points[i].x, points[i].y, points[i].z));
+    Scene scene = compile_test_scene(s.import());
+    for (size_t i = 0; i < 3; ++i) {
+        CAPTURE(i);
+        const glm::dvec3& p = points[i];
+        const double near = std::max(-0.5, p.z + (wall - p.z) * p.y / (p.y - edge));
+        REQUIRE(near < 0.5);
+        std::vector<glm::dvec3> corners;
+        for (const glm::dvec2& c : {glm::dvec2(-1, near), {1, near}, {1, 0.5}, {-1, 0.5}})
+            corners.push_back(glm::dvec3(c.x, 0, c.y) - p);
+        check_value(measured(scene, std::to_string(i), {1024}),
+                    800 / pi * polygon_irradiance(corners, {0, 0, 1}));
+    }
+}
+
 // A closed room holds Φ / (1 - ρ); in a cube every wall gets a sixth.
 TEST_CASE("CIE 171, 5.8: light between diffuse walls, in a cube and in an integrating sphere with a port") {
     for (const double reflectance : {0.0, 0.5, 0.8, 0.95}) {
