@@ -143,13 +143,17 @@ class Engine:
             raise RuntimeError(reply["error"])
         return reply
 
-    def render(self, samples, seed):
-        import numpy as np
-
+    def seconds(self, samples, seed):
+        """Of rendering that, to `file`."""
         request = {"samples": samples, "seed": seed, "file": str(self.file)}
         self.process.stdin.write(json.dumps(request) + "\n")
         self.process.stdin.flush()
-        seconds = self._reply()["seconds"]
+        return self._reply()["seconds"]
+
+    def render(self, samples, seed):
+        import numpy as np
+
+        seconds = self.seconds(samples, seed)
         return np.load(self.file), seconds
 
     def close(self):
