@@ -1,5 +1,6 @@
 // Light that leaves a surface on which a meter lies (features/surface_meters.glsl). A forward path that is about to do so first makes a
 // step of no length, which brings it to the pixel, weighted against backward paths that come to the surface there.
+#include "features/light_layers.glsl"
 #include "features/merging.glsl"
 #include "features/mis.glsl"
 #include "features/polarization.glsl"
@@ -19,6 +20,7 @@ bool leave_surface(inout Path path, inout ShadowRay shadow) {
     shadow.direction = path.direction;
     shadow.t_max = ALREADY_THERE;
     carry_polarization(shadow, path);
+    carry_history(shadow, path);
     weigh(shadow, others_of_escape(path, importance, 0.0));
     shadow.target = pixel_of(view, r.film);
     path.leaves.y = v + 1u;

@@ -279,6 +279,41 @@ TEST_CASE("receivers far away have layers, too, and receptors of meters are no o
     }
 }
 
+// A lamp above and one below a floor, whose meter tells illuminance of front and back, exitance of front and
+// back.
+TEST_CASE("what leaves a surface has layers, as what comes to it") {
+    SceneBuilder s;
+    s.mesh({{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {0, 1, 2, 0, 2, 3}, s.lambertian(0.6),
+           at(0, 0, 0));
+    name_last(s, "floor");
+    for (const double z : {1.0, -1.0}) {
+        s.sphere(0.2, s.black_emitter(5), at(0, 0, z));
+        name_last(s, z > 0 ? "upper" : "lower");
+    }
+    s.placed("receiver", {{"class", "surface"}, {"mesh", "floor"}}, at(0, 0, 0));
+    name_last(s, "meter");
+    Scene scene = compile_test_scene(s.import());
+    const std::vector<LightLayer> layers = layers_of(
+        json::parse(R"([{"name": "upper", "objects": ["upper"]}, {"name": "lower", "objects": ["lower"]}])"));
+    for (const Algorithm algorithm : all_algorithms) {
+        const std::string by = algorithm_name(algorithm);
+        CAPTURE(by);
+        RenderPlan plan = plan_of(algorithm, 1, layers);
+        plan.receiver = "meter", plan.width = 2, plan.height = 4, plan.forward_paths = 1024;
+        const Estimates all = render_estimates(scene, plan);
+        for (const uint32_t lamp : {1u, 2u}) {
+            CAPTURE(lamp);
+            const Estimates layer = image_of(all, lamp, 4);
+            const auto part = [&](uint32_t row) { return window_mean(layer, {0, row, 2, 1}); };
+            const WindowMean comes = part(lamp - 1), leaves = part(lamp + 1);
+            CHECK(comes.mean > 0.1);
+            CHECK(leaves.mean / comes.mean == doctest::Approx(0.6).epsilon(0.03));
+            CHECK(part(2 - lamp).mean == 0);
+            CHECK(part(4 - lamp).mean == 0);
+        }
+    }
+}
+
 TEST_CASE("algorithms agree in every layer of a caustic") {
     Comparison c;
     c.width = c.height = 16, c.seeds = 8, c.backward = 512, c.largest_error = 0.1, c.tolerance = 0.01;
