@@ -29,6 +29,20 @@ ObjectDescription object_description(GltfImport& import, const JsonAt& at,
     return result;
 }
 
+// What a receiver of class `surface` lies on: `mesh` or `node`, by name or, as glTF has it, by index. One
+// word for all of these: a name, or the pointer of the object.
+void name_watched(const JsonAt& at, ObjectDescription& receiver) {
+    json& parameters = receiver.parameters;
+    if (parameters.contains("node") && parameters.contains("mesh"))
+        fail_at(at, "has a mesh and a node; allowed: one of the two");
+    for (const auto& [key, array] : {std::pair("mesh", "/meshes/"), {"node", "/nodes/"}}) {
+        if (!parameters.contains(key)) continue;
+        json value = parameters[key];
+        parameters.erase(key);
+        parameters["mesh"] = value.is_number_unsigned() ? json(array + value.dump()) : value;
+    }
+}
+
 void load_spectra(GltfImport& import, const JsonAt& optics) {
     for (size_t i = 0; i < array_size(optics, "spectra"); ++i) {
         JsonAt at = element(member(optics, "spectra"), i);
@@ -233,6 +247,7 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
                                          : object_description(import, *at, {}),
                             world_from_local};
         read_stokes(object);
+        if (is_receiver && object.object.class_name == "surface") name_watched(*at, object.object);
         if (is_light && (*optics)->contains("geometry"))
             object.shape = uint32_t(import.scene.shapes.size() - 1);
         if (is_geometry) {

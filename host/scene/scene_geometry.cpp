@@ -124,7 +124,7 @@ WatchedSurface SceneCompiler::add_watched(const std::string& mesh, const std::st
         fail_input("{}: its node has no mesh; allowed there, or with a mesh: the name of one, or of its node",
                    place);
     if (instances.empty())
-        fail_input("{}/mesh: there is no mesh, and no node with one, called {}", place, mesh);
+        fail_input("{}: there is no mesh, and no node with one, called {}", place, mesh);
     for (const uint32_t i : instances) {
         const MaterialDescription& material = in_.materials[in_.meshes[in_.instances[i].mesh].material];
         if (material.priority > 0)

@@ -14,7 +14,9 @@ std::vector<uint32_t> watched_instances(const SceneDescription& scene, const std
     std::vector<uint32_t> found;
     for (uint32_t i = 0; i < scene.instances.size(); ++i) {
         const MeshInstance& instance = scene.instances[i];
-        const bool is_named = instance.name == mesh || scene.meshes[instance.mesh].name == mesh;
+        const MeshDescription& description = scene.meshes[instance.mesh];
+        const bool is_named = instance.name == mesh || description.name == mesh || instance.where == mesh ||
+                              description.where.rfind(mesh + "/", 0) == 0;
         if (mesh.empty() ? where.rfind(instance.where + "/", 0) == 0 : is_named) found.push_back(i);
     }
     return found;

@@ -20,7 +20,7 @@ layout(scalar, set = 0) readonly buffer WatchedWords { uint watched_words[]; };
 
 struct SurfaceMeter {
     Placement placement;
-    WatchedSurface mesh;  //: none. Name of a node that has a mesh, or of a mesh wherever it stands; without it the mesh of this node.
+    WatchedSurface mesh;  //: none. Name or index of a mesh, wherever it stands, or name of a node that has one (as `node` also its index); without it the mesh of this node.
 };
 #define receiver_surface_HAS_APERTURE
 

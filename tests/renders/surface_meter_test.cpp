@@ -341,12 +341,19 @@ TEST_CASE(
         }
         return std::string();
     };
-    for (const auto& [receiver, on_mesh] : std::vector<std::pair<json, bool>>{
-             {{{"class", "surface"}}, true}, {{{"class", "surface"}, {"mesh", "floor"}}, false}})
+    for (const auto& [receiver, on_mesh] :
+         std::vector<std::pair<json, bool>>{{{{"class", "surface"}}, true},
+                                            {{{"class", "surface"}, {"mesh", "floor"}}, false},
+                                            {{{"class", "surface"}, {"mesh", 0}}, false},
+                                            {{{"class", "surface"}, {"node", "floor"}}, false},
+                                            {{{"class", "surface"}, {"node", 1}}, false}})
         CHECK(compile_test_scene(scene_of(receiver, on_mesh)).receivers[0].watched.count == 2);
     CHECK(complaint({{"class", "surface"}}, false).find("its node has no mesh") != std::string::npos);
     CHECK(complaint({{"class", "surface"}, {"mesh", "roof"}}, false).find("called roof") !=
           std::string::npos);
-    CHECK(complaint({{"class", "surface"}, {"mesh", 3}}, true).find("allowed: the name of a node") !=
+    CHECK(complaint({{"class", "surface"}, {"mesh", 3}}, true).find("called /meshes/3") != std::string::npos);
+    CHECK(complaint({{"class", "surface"}, {"mesh", true}}, true).find("allowed: the name of a node") !=
+          std::string::npos);
+    CHECK(complaint({{"class", "surface"}, {"mesh", 0}, {"node", 0}}, true).find("one of the two") !=
           std::string::npos);
 }
