@@ -21,9 +21,9 @@ const char* scene_text = R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ET
     {"name": "camera", "camera": 0, "translation": [0, 0, 3]},
     {"name": "plane", "extensions": {"ETD_optics": {"receiver": {"class": "illuminance", "size": [2, 2], "resolution": [4, 4]}}}}]})";
 
-struct Session {
+struct Setup {
     Executable program;
-    Session() { write_text(program.folder / "s.gltf", scene_text); }
+    Setup() { write_text(program.folder / "s.gltf", scene_text); }
     void run(std::vector<std::string> words, const std::vector<std::string>& more = {}) const {
         words.insert(words.end(), more.begin(), more.end());
         const Run run = program.run(words);
@@ -53,7 +53,7 @@ const std::vector<std::string> render = {"render", "s.gltf",      "-q",         
 }  // namespace
 
 TEST_CASE("images have the layers of the scene, or those that are asked for") {
-    const Session s;
+    const Setup s;
     s.run(render, {"-o", "scene.exr", "--passes", "8", "--aovs"});
     const Image scene = s.image("scene.exr");
     CHECK(mean_of(scene, "left.G") + mean_of(scene, "rest.G") ==
@@ -73,7 +73,7 @@ TEST_CASE("images have the layers of the scene, or those that are asked for") {
 }
 
 TEST_CASE("layers are kept in checkpoints, and parts merge with them") {
-    const Session s;
+    const Setup s;
     s.run(render, {"-o", "single.exr", "--passes", "16", "--aovs"});
     s.run(render, {"-o", "a.exr", "--passes", "0:6", "--checkpoint", "a.etd"});
     s.run(render, {"-o", "b.exr", "--passes", "6:16", "--checkpoint", "b.etd"});
@@ -90,7 +90,7 @@ TEST_CASE("layers are kept in checkpoints, and parts merge with them") {
 }
 
 TEST_CASE("meters tell mean, flux and share of each layer, in parts as in one") {
-    const Session s;
+    const Setup s;
     const std::vector<std::string> measure = {"measure", "s.gltf", "-q", "--layers", "lamps"};
     s.run(measure, {"-o", "one", "--passes", "64"});
     const std::string figures = read_text(s.program.folder / "one/figures.csv");
@@ -110,7 +110,7 @@ TEST_CASE("meters tell mean, flux and share of each layer, in parts as in one") 
 }
 
 TEST_CASE("layers that cannot be are told in one line") {
-    const Session s;
+    const Setup s;
     const std::vector<std::pair<std::string, std::string>> bad = {
         {"lamp", "lamp"},
         {"[{]", "is no JSON"},
