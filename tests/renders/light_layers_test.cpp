@@ -314,7 +314,7 @@ TEST_CASE("what leaves a surface has layers, as what comes to it") {
     }
 }
 
-TEST_CASE("algorithms agree in every layer of a caustic") {
+TEST_CASE("algorithms agree in every layer of a caustic" * doctest::test_suite("long")) {
     Comparison c;
     c.width = c.height = 16, c.seeds = 8, c.backward = 512, c.largest_error = 0.1, c.tolerance = 0.01;
     c.layers = layers_of(json::parse(R"([
