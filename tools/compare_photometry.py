@@ -221,8 +221,8 @@ def compare_office(folder):
         "Monte Carlo": [[*common, "-aa", "0", "-ad", str(1 << k)] for k in range(4, 15)],
         "cache": [
             [*common, "-aa", aa, "-ar", "64", "-ad", str(1 << k), "-as", str(1 << (k - 2))]
-            for aa in ("0.2", "0.1", "0.05")
-            for k in range(8, 14)
+            for aa in ("0.2", "0.1")
+            for k in range(8, 12)
         ],
     }
     for name, tries in ways.items():
