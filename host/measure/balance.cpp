@@ -4,17 +4,6 @@
 #include "host/measure/report.h"
 
 namespace etendue {
-namespace {
-
-// What has come to a meter; nothing where its pixels stand for no area or solid angle.
-std::optional<double> received_flux(const Readings& readings) {
-    for (const Figure& figure : figures_of(readings, {}))
-        if (figure.name == "flux") return figure.interval.value;
-    return {};
-}
-
-}  // namespace
-
 std::vector<BalanceLine> balance_of(const Measurement& measurement) {
     const RenderCounters& all = measurement.counters;
     std::vector<BalanceLine> lines;

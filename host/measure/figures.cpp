@@ -263,6 +263,12 @@ std::vector<Figure> figures_of(const Readings& readings, const std::vector<Meter
     return figures;
 }
 
+std::optional<double> received_flux(const Readings& readings) {
+    const Meter& meter = readings.meter;
+    if (!meter.has_extent || has_parts(readings)) return {};
+    return extent_of(meter) * mean_of(weighted(luminous_values(readings), weights_of(meter)));
+}
+
 double relative_error_of_mean(const Readings& readings) {
     const Interval mean = mean_interval(weighted(luminous_values(readings), weights_of(readings.meter)));
     return mean.value > 0 ? 0.5 * (mean.high - mean.low) / mean.value : INFINITY;

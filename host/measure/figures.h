@@ -61,10 +61,14 @@ constexpr uint32_t least_rendering_bins = 47;
 // colour rendering.
 std::vector<Figure> color_figures(const Readings& readings, const std::vector<double>& weights);
 
-// `points`: for uniformity; empty = none. `glare_from`: see host/measure/glare.h. Layers: the mean of each, its
-// flux and its share of all light.
+// `points`: for uniformity; empty = none. `glare_from`: see host/measure/glare.h. Layers: the mean of each,
+// its flux and its share of all light.
 std::vector<Figure> figures_of(const Readings& readings, const std::vector<MeterPoint>& points,
                                double glare_from = usual_glare_from);
+
+// lm that have come to a meter, the figure `flux`; nothing where its pixels stand for no area or solid angle,
+// or it has parts.
+std::optional<double> received_flux(const Readings& readings);
 
 // Half the interval of a meter's mean, by its value: what --error asks. Infinite where it is 0.
 double relative_error_of_mean(const Readings& readings);

@@ -11,10 +11,10 @@ namespace {
 
 constexpr size_t least_pixels = 4096;  // fewer are wider than 2.2°, and blur what glares
 
-// Solid angles about the axis of a meter that covers the half space before it; else nothing.
 struct Eye {
-    glm::dvec3 sight{0}, up{0};
+    glm::dvec3 sight{0}, up{0};  // unit, at right angles
 };
+// Of a meter that covers the half space before it with enough pixels.
 std::optional<Eye> eye_of(const Meter& meter) {
     if (meter.unit != "cd/m²" || meter.pixels() < least_pixels) return {};
     Eye eye;
