@@ -117,6 +117,7 @@ struct RaysOptions : SceneChoice {
     bool backward = false;  // from the receiver, through pixels spread over its image; else from the lights
     std::vector<std::string> events, objects;  // only paths with such an event there; empty = any
     std::vector<std::string> without;          // no paths that come to one of these
+    bool inside = false;                       // of optical elements, too
     uint64_t seed = 0;
 };
 

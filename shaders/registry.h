@@ -12,7 +12,8 @@
     X(2, Sphere, sphere)       \
     X(3, Disk, disk)           \
     X(4, Rectangle, rectangle) \
-    X(5, Cylinder, cylinder)
+    X(5, Cylinder, cylinder)   \
+    X(9, Microstructure, microstructure)
 
 // folder lights/, contract interfaces/light_source.glsl
 #define LIGHT_CLASSES(X)                \
@@ -74,6 +75,3 @@
     X(2, HenyeyGreenstein, henyey_greenstein) \
     X(3, Rayleigh, rayleigh)                  \
     X(4, Mie, mie)
-
-// folder elements/, contract interfaces/optical_element.glsl
-#define ELEMENT_CLASSES(X)

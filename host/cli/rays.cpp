@@ -32,14 +32,15 @@ CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments
         ->option_text("lights|receiver");
     rays->add_option(
             "--events", arguments.events,
-            "Keep paths with one of: emitted, reflected, refracted, straight, scattered, bent, absorbed, "
-            "escaped")
+            "Keep paths with one of: emitted, reflected, refracted, straight, scattered, entered, left, bent, "
+            "absorbed, escaped")
         ->option_text("E,…");
     rays->add_option("--objects", arguments.objects,
                      "Keep paths with an event at one of these: shapes, nodes, materials, media, lights")
         ->option_text("NAME,…");
     rays->add_option("--without", arguments.without, "Leave out paths that come to one of these")
         ->option_text("NAME,…");
+    rays->add_flag("--inside", options.inside, "Also what happens within optical elements");
     add_shared(*rays, options, arguments.shared,
                {{"size", "Of the image, whose pixels the receiver's paths go through"},
                 {"receiver"},

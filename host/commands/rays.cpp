@@ -21,8 +21,8 @@ PathFilter filter_of(const RaysOptions& options) {
         while (name != event_name(event)) {
             if (event == PathEvent::escaped)
                 fail_input(
-                    "--events {}: allowed: emitted, reflected, refracted, straight, scattered, bent, "
-                    "absorbed, escaped",
+                    "--events {}: allowed: emitted, reflected, refracted, straight, scattered, "
+                    "entered, left, bent, absorbed, escaped",
                     name);
             event = PathEvent(int(event) + 1);
         }
@@ -51,7 +51,7 @@ int rays_command(const RaysOptions& options) {
     const uint32_t a_pass = (options.paths + passes - 1) / passes;
     const uint64_t pixels = uint64_t(settings.width) * settings.height;
     settings.forward_paths = (a_pass + 0.5) / double(pixels);
-    PathRecorder recorder(*opened.device, scene, settings, !options.backward);
+    PathRecorder recorder(*opened.device, scene, settings, !options.backward, 64, options.inside);
     std::vector<RecordedPath> kept;
     for (uint32_t pass = 0, done = 0; done < options.paths; ++pass) {
         std::vector<uint32_t> indices(std::min(a_pass, options.paths - done));

@@ -7,6 +7,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "host/error.h"
+#include "host/geometry/placing.h"
 #include "host/geometry/twins.h"
 #include "host/scene/records.h"
 #include "host/scene/watched_surface.h"
@@ -27,10 +28,7 @@ glm::vec3 transform_point(const glm::dmat4& m, const glm::vec3& p) {
 }
 
 void grow_transformed(Box& box, const glm::dmat4& m, const Box& local) {
-    for (int corner = 0; corner < 8; ++corner)
-        box.grow(
-            transform_point(m, {corner & 1 ? local.hi.x : local.lo.x, corner & 2 ? local.hi.y : local.lo.y,
-                                corner & 4 ? local.hi.z : local.lo.z}));
+    for (int corner = 0; corner < 8; ++corner) box.grow(glm::vec3(m * glm::dvec4(corner_of(local, corner), 1)));
 }
 
 // Outward by a rounding step, so that float boxes hold what the doubles say.
@@ -140,8 +138,10 @@ class Builder {
         }
         if (order) *order = std::move(all);
         const double seconds = world_.statistics.seconds + bvh.statistics.seconds;
+        const uint32_t depth = std::max(world_.statistics.depth, bvh.statistics.depth);
         if (first == 0) world_.statistics = bvh.statistics;
         world_.statistics.seconds = seconds;
+        world_.statistics.depth = depth;
         return header;
     }
 
@@ -184,26 +184,9 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
                   const std::vector<uint32_t>& shape_refs, unsigned threads, Features& features) {
     World world;
     Builder builder(scene, world, threads);
-
-    // Recentre on the middle of everything that is placed.
+    std::vector<uint32_t> all_placed;
     std::vector<Box> local_bounds;
     for (const MeshDescription& mesh : scene.meshes) local_bounds.push_back(mesh_bounds(mesh));
-    glm::dvec3 lo(INFINITY), hi(-INFINITY);
-    const auto grow = [&](const glm::dmat4& m, const Box& box) {
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::dvec3 p =
-                m * glm::dvec4(corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
-                               corner & 4 ? box.hi.z : box.lo.z, 1);
-            lo = glm::min(lo, p), hi = glm::max(hi, p);
-        }
-    };
-    for (const MeshInstance& instance : scene.instances)
-        if (!local_bounds[instance.mesh].empty())
-            grow(instance.world_from_local, local_bounds[instance.mesh]);
-    for (size_t i = 0; i < scene.shapes.size(); ++i) grow(scene.shapes[i].world_from_local, shape_bounds[i]);
-    if (lo.x <= hi.x) world.center = 0.5 * (lo + hi);
-    const glm::dmat4 recentre = glm::translate(glm::dmat4(1.0), -world.center);
-
     std::vector<uint32_t> uses(scene.meshes.size());
     for (const MeshInstance& instance : scene.instances) ++uses[instance.mesh];
     const std::vector<bool> watched = all_watched(scene);
@@ -219,61 +202,70 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
         std::any_of(scene.instances.begin(), scene.instances.end(),
                     [&](const MeshInstance& i) { return has_attributes(scene.meshes[i.mesh]); });
     builder.keep_indices(features.vertex_attributes);
+    const Placing placing(scene, shape_bounds, local_bounds);
+    world.center = placing.center();
 
-    std::vector<PrimitiveRecord> primitives;
-    std::vector<uint32_t> placed;
-    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const MeshInstance& instance = scene.instances[i];
-        if (merged(instance.mesh))
-            builder.add_triangles(scene.meshes[instance.mesh], recentre * instance.world_from_local,
-                                  primitives);
-        placed.resize(primitives.size(), i);
-    }
-    std::vector<Box> boxes;
-    boxes.reserve(primitives.size());
-    for (const PrimitiveRecord& p : primitives) boxes.push_back(triangle_box(p));
-    features.triangles = !primitives.empty();
-
-    const auto place = [&](const glm::dmat4& world_from_local, PrimitiveKind kind, uint32_t word,
-                           uint32_t material, const Box& local) {
-        PrimitiveRecord p{};
-        p.v0.x = std::bit_cast<float>(word);
-        p.v0.y = std::bit_cast<float>(uint32_t(world.transforms.size()));
-        p.material = material;
-        p.light = no_record;
-        p.attributes = uint32_t(kind) << 30;
-        primitives.push_back(p);
-        Box box;
-        grow_transformed(box, world_from_local, local);
-        boxes.push_back(widened(box));
-        world.transforms.push_back(transform_record(world_from_local));
-    };
-    for (size_t i = 0; i < scene.shapes.size(); ++i) {
-        place(recentre * scene.shapes[i].world_from_local, PrimitiveKind::shape, shape_refs[i],
-              scene.shapes[i].material, shape_bounds[i]);
-        placed.push_back(uint32_t(scene.instances.size() + i));
-        features.shapes = true;
-    }
-    // Instances point to the header of their mesh's tree, which is built behind the world's: patched below.
-    for (uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const MeshInstance& instance = scene.instances[i];
-        if (!merged(instance.mesh) && !local_bounds[instance.mesh].empty()) {
-            place(recentre * instance.world_from_local, PrimitiveKind::instance, instance.mesh, 0,
-                  local_bounds[instance.mesh]);
-            placed.push_back(i);
-            features.instances = true;
-            ++world.instances;
+    // Of the scene and of each content: first all that is placed, since that of the scene is recentred.
+    for (uint32_t content = 0; content <= scene.contents.size(); ++content) {
+        const glm::dmat4 recentre =
+            content == 0 ? glm::translate(glm::dmat4(1.0), -world.center) : glm::dmat4(1.0);
+        std::vector<PrimitiveRecord> primitives;
+        std::vector<uint32_t> placed;
+        for (const uint32_t i : placing.instances(content)) {
+            const MeshInstance& instance = scene.instances[i];
+            if (merged(instance.mesh))
+                builder.add_triangles(scene.meshes[instance.mesh], recentre * instance.world_from_local,
+                                      primitives);
+            placed.resize(primitives.size(), i);
         }
-    }
+        placing.add_boundaries(content, recentre, primitives, placed);
+        std::vector<Box> boxes;
+        boxes.reserve(primitives.size());
+        for (const PrimitiveRecord& p : primitives) boxes.push_back(triangle_box(p));
+        features.triangles |= !primitives.empty();
 
-    for (const Box& box : boxes) world.bounds.grow(box);
-    std::vector<uint32_t> order;
-    builder.add_tree(primitives, boxes, &order);
-    world.sources = order;
-    for (uint32_t& i : order) i = placed[i];
-    world.placed = std::make_shared<const std::vector<uint32_t>>(std::move(order));
+        const auto place = [&](const glm::dmat4& world_from_local, PrimitiveKind kind, uint32_t word,
+                               uint32_t material, const Box& local) {
+            PrimitiveRecord p{};
+            p.v0.x = std::bit_cast<float>(word);
+            p.v0.y = std::bit_cast<float>(uint32_t(world.transforms.size()));
+            p.material = material;
+            p.light = no_record;
+            p.attributes = uint32_t(kind) << 30;
+            primitives.push_back(p);
+            Box box;
+            grow_transformed(box, world_from_local, local);
+            boxes.push_back(widened(box));
+            world.transforms.push_back(transform_record(world_from_local));
+        };
+        for (const uint32_t i : placing.shapes(content)) {
+            place(recentre * scene.shapes[i].world_from_local, PrimitiveKind::shape, shape_refs[i],
+                  scene.shapes[i].material, shape_bounds[i]);
+            placed.push_back(uint32_t(scene.instances.size() + i));
+            features.shapes = true;
+        }
+        // Instances point to the header of their mesh's tree, which is built behind the world's: patched below.
+        for (const uint32_t i : placing.instances(content)) {
+            const MeshInstance& instance = scene.instances[i];
+            if (!merged(instance.mesh) && !local_bounds[instance.mesh].empty()) {
+                place(recentre * instance.world_from_local, PrimitiveKind::instance, instance.mesh, 0,
+                      local_bounds[instance.mesh]);
+                placed.push_back(i);
+                features.instances = true;
+                ++world.instances;
+            }
+        }
+
+        if (content == 0)
+            for (const Box& box : boxes) world.bounds.grow(box);
+        std::vector<uint32_t> order;
+        world.headers.push_back(builder.add_tree(primitives, boxes, &order));
+        if (content == 0) world.sources = order;
+        for (const uint32_t i : order) all_placed.push_back(placed[i]);
+        world.contents.resize(all_placed.size(), content);
+    }
+    world.placed = std::make_shared<const std::vector<uint32_t>>(std::move(all_placed));
     world.world_primitives = uint32_t(world.primitives.size());
-    primitives = {}, boxes = {};
 
     std::vector<uint32_t> headers(scene.meshes.size(), no_record);
     for (uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {

@@ -1,5 +1,5 @@
 // The scene's geometry as the device holds it: one hierarchy over world triangles, analytic shapes and
-// instances.
+// instances, and one for what each optical element holds, in its frame.
 //
 // Meshes used once, or emissive, or small, or with a meter on their surface, are transformed to world space
 // and merged; the others keep a hierarchy of their own and are placed by instances. World coordinates are
@@ -39,9 +39,14 @@ struct VertexRecord {
 struct World {
     glm::dvec3 center{0};
     Box bounds;
-    std::vector<PrimitiveRecord> primitives;  // leaf order, one tree behind the other; the world's come first
-    uint32_t world_primitives = 0;
-    // Of the world's primitives: what they are of, counted through the scene's instances and then its shapes.
+    // Leaf order, one tree behind the other: that of the scene, those of the contents of elements, those of
+    // instanced meshes.
+    std::vector<PrimitiveRecord> primitives;
+    uint32_t world_primitives = 0;     // all but those of instanced meshes
+    std::vector<uint32_t> headers;     // of the trees of the scene and of the contents, in `nodes`
+    std::vector<uint32_t> contents;    // of each world primitive: 0 = the scene, i = content i - 1
+    // Of the world's primitives: what they are of, counted through the scene's instances, its shapes, and the
+    // elements whose boundaries they are (of a content's own boundary the first that holds it).
     std::shared_ptr<const std::vector<uint32_t>> placed;
     std::vector<uint32_t> sources;  // of the same: their places in the order of scene and meshes
     std::vector<uint32_t> twins;  // of each primitive: the other side of its sheet (twins.h), or no_record
@@ -54,7 +59,7 @@ struct World {
     BvhStatistics statistics;  // of the world's tree; seconds of all
 };
 
-enum class PrimitiveKind : uint32_t { triangle = 0, shape = 1, instance = 2 };
+enum class PrimitiveKind : uint32_t { triangle = 0, shape = 1, instance = 2, boundary = 3 };
 constexpr PrimitiveKind primitive_kind(const PrimitiveRecord& p) { return PrimitiveKind(p.attributes >> 30); }
 
 // `shape_bounds`: local boxes of scene.shapes. `shape_refs`: RecordRefs of their geometries. Sets the

@@ -79,17 +79,16 @@ std::vector<uint32_t> check_hierarchy(const GltfImport& import) {
     return parent;
 }
 
-// The nodes that the chosen scene lists; without scenes, every root.
-std::vector<uint32_t> root_nodes(GltfImport& import, const std::vector<uint32_t>& parent) {
+// The nodes that a scene of the file lists; without scenes, every root.
+std::vector<uint32_t> root_nodes(GltfImport& import, uint32_t chosen) {
+    const std::vector<uint32_t>& parent = import.parents;
     std::vector<uint32_t> roots;
-    size_t scene_count = array_size(import.root, "scenes");
-    std::optional<uint32_t> chosen = index(import.root, "scene", scene_count, "/scenes");
-    if (scene_count == 0) {
+    if (array_size(import.root, "scenes") == 0) {
         for (uint32_t n = 0; n < parent.size(); ++n)
             if (parent[n] == UINT32_MAX) roots.push_back(n);
         return roots;
     }
-    JsonAt scene = document_element(import, "scenes", chosen.value_or(0));
+    JsonAt scene = document_element(import, "scenes", chosen);
     std::vector<bool> listed(parent.size(), false);
     for (size_t i = 0; i < array_size(scene, "nodes"); ++i) {
         JsonAt at = element(member(scene, "nodes"), i);
@@ -161,7 +160,7 @@ void check_world_bounds(const JsonAt& node, const Bounds& bounds, const glm::dma
 // A skinned mesh stands where its joints are, whatever the node's own place (glTF 2.0, section 3.7.3.3).
 std::vector<glm::dmat4> placements(GltfImport& import, const JsonAt& node, const glm::dmat4& world_from_local,
                                    const Deformation& deformation) {
-    if (!deformation.joints.empty()) return {glm::dmat4(1.0)};
+    if (!deformation.joints.empty()) return {import.content_root};
     std::vector<glm::dmat4> result = gpu_instances(import, node);
     for (glm::dmat4& m : result) m = world_from_local * m;
     return result;
@@ -201,17 +200,15 @@ bool is_invertible(const glm::dmat4& matrix) {
     return product > 0 && std::fabs(glm::dot(x, glm::cross(y, z))) > 1e-10 * product;
 }
 
-void load_nodes(GltfImport& import) {
-    import.mesh_ranges.resize(array_size(import.root, "meshes"));
+// The nodes of one scene of the file, which are placed below the import's content_root.
+void place_nodes(GltfImport& import, uint32_t scene) {
     struct Visit {
         uint32_t node;
         glm::dmat4 world_from_parent;
     };
-    import.parents = check_hierarchy(import);
-    const std::vector<uint32_t> roots = root_nodes(import, import.parents);
-    pose_nodes(import);
+    const std::vector<uint32_t> roots = root_nodes(import, scene);
     std::vector<Visit> open;
-    for (size_t i = roots.size(); i-- > 0;) open.push_back({roots[i], glm::dmat4(1.0)});
+    for (size_t i = roots.size(); i-- > 0;) open.push_back({roots[i], import.content_root});
     while (!open.empty()) {
         Visit visit = open.back();
         open.pop_back();
@@ -230,6 +227,16 @@ void load_nodes(GltfImport& import) {
         for (size_t c = children ? (*children)->size() : 0; c-- > 0;)
             open.push_back({uint32_t((**children)[c].get<double>()), world});
     }
+}
+
+void load_nodes(GltfImport& import) {
+    import.mesh_ranges.resize(array_size(import.root, "meshes"));
+    import.parents = check_hierarchy(import);
+    pose_nodes(import);
+    const size_t scenes = array_size(import.root, "scenes");
+    const uint32_t scene = index(import.root, "scene", scenes, "/scenes").value_or(0);
+    place_nodes(import, scene);
+    load_elements(import, scene);
     if (const auto& none = import.zero_area; none.meshes > 0)
         warn(import, {nullptr, none.first_pointer, &import.file_name},
              fmt::format("mesh '{}' has triangles of zero area: {} in {} mesh{} are left out",

@@ -78,7 +78,7 @@ void load_class_files(GltfImport& import, const JsonAt& optics) {
         only_members(at, {"interface", "file"});
         JsonAt interface_at = member(at, "interface"), file = member(at, "file");
         const std::string& interface = text_value(interface_at);
-        const auto known = {"surface", "geometry", "light", "receiver", "medium", "element", "phase"};
+        const auto known = {"surface", "geometry", "light", "receiver", "medium", "phase"};
         if (std::none_of(known.begin(), known.end(), [&](const char* name) { return interface == name; }))
             fail_at(interface_at, "is '{}'; must be {}", interface, fmt::join(known, ", "));
         import.scene.class_files.push_back({interface, resolve_uri(import, file), at.pointer});
@@ -259,7 +259,8 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
     place("geometry", import.scene.shapes);
     place("light", import.scene.lights);
     place("receiver", import.scene.receivers);
-    place("element", import.scene.elements);
+    if (std::optional<JsonAt> at = find_object(*optics, "element"))
+        read_element(import, *at, text(node, "name", node.pointer), world_from_local);
 }
 
 }  // namespace etendue

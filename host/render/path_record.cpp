@@ -15,13 +15,13 @@ namespace etendue {
 struct DeviceVertex {
     glm::vec3 position;
     uint32_t event;
-    uint32_t material, light, medium, primitive;
+    uint32_t material, light, medium, primitive, element;
     float arriving, leaving;
     glm::vec3 rgb;
     glm::vec4 throughput;
     glm::vec3 stokes, axis;
 };
-static_assert(sizeof(DeviceVertex) == 92);
+static_assert(sizeof(DeviceVertex) == 96);
 
 namespace {
 
@@ -34,7 +34,9 @@ enum EventBits : uint32_t {
     emission = 16,
     escape = 32,
     roulette = 64,
-    bend = 128
+    bend = 128,
+    enter = 256,
+    leave = 512
 };
 
 constexpr uint32_t most_paths = 4096;  // of a dispatch
@@ -43,6 +45,8 @@ PathEvent event_of(const DeviceVertex& v) {
     if (v.event & emission) return PathEvent::emitted;
     if (v.event & escape) return PathEvent::escaped;
     if (v.event & bend) return PathEvent::bent;
+    if (v.event & enter) return PathEvent::entered;
+    if (v.event & leave) return PathEvent::left;
     if ((v.event & (reflect | transmit | straight)) == 0) return PathEvent::absorbed;
     if (v.event & straight) return PathEvent::straight;
     if (v.material == no_record) return PathEvent::scattered;
@@ -63,6 +67,10 @@ const char* event_name(PathEvent event) {
             return "straight";
         case PathEvent::scattered:
             return "scattered";
+        case PathEvent::entered:
+            return "entered";
+        case PathEvent::left:
+            return "left";
         case PathEvent::bent:
             return "bent";
         case PathEvent::absorbed:
@@ -103,11 +111,12 @@ bool PathFilter::keeps(const RecordedPath& path) const {
 }
 
 PathRecorder::PathRecorder(Device& device, Scene& scene, const RenderSettings& settings, bool forward,
-                           uint32_t most_vertices)
+                           uint32_t most_vertices, bool inside)
     : device_(device),
       scene_(scene),
       settings_(settings),
       forward_(forward),
+      inside_(inside),
       room_(std::max(2u, most_vertices) * (scene.features.bending ? 4 : 1)),
       paths_(settings.width * settings.height),
       spectra_(device, scene),
@@ -137,13 +146,21 @@ PathRecorder::PathRecorder(Device& device, Scene& scene, const RenderSettings& s
 
 PathRecorder::~PathRecorder() = default;
 
+// Within elements nothing is shown but what starts there, unless somebody asks.
+bool PathRecorder::shows(const DeviceVertex& v) const {
+    if (inside_ || v.element == 0 || (v.event & emission)) return true;
+    return (v.event & (enter | leave)) && scene_.elements[v.element - 1].parent == 0;
+}
+
 PathVertex PathRecorder::vertex_of(const DeviceVertex& v, double unit) const {
     PathVertex vertex;
     vertex.event = event_of(v);
     vertex.smooth = vertex.event != PathEvent::scattered && (v.event & delta);
     vertex.roulette = v.event & roulette;
     vertex.position = glm::dvec3(v.position) + scene_.center;
-    if (vertex.event == PathEvent::scattered || vertex.event == PathEvent::bent) {
+    if (vertex.event == PathEvent::entered || vertex.event == PathEvent::left) {
+        vertex.object = scene_.elements[v.element - 1].name;
+    } else if (vertex.event == PathEvent::scattered || vertex.event == PathEvent::bent) {
         const auto medium = scene_.medium_names.find(v.medium);
         if (medium != scene_.medium_names.end()) vertex.object = medium->second;
     } else if (v.material < scene_.material_names.size()) {
@@ -188,7 +205,7 @@ std::vector<RecordedPath> PathRecorder::record(uint64_t pass, std::span<const ui
         for (uint32_t i = 0; i < count; ++i) {
             RecordedPath path{forward_, pass, indices[first + i], nm, {}, false};
             for (const DeviceVertex& v : vertices_.read_array<DeviceVertex>(counts[i], uint64_t(i) * room_))
-                path.vertices.push_back(vertex_of(v, unit));
+                if (shows(v)) path.vertices.push_back(vertex_of(v, unit));
             const PathVertex& last = path.vertices.back();
             path.is_cut = !last.roulette && last.event != PathEvent::escaped &&
                           last.event != PathEvent::absorbed && last.leaving > 0;

@@ -19,6 +19,8 @@ enum class PathEvent {
     refracted,  // through a surface, bent or scattered
     straight,   // through a surface as if it were not there
     scattered,  // in a medium
+    entered,    // an optical element
+    left,       // … again
     bent,       // a point of the way through a medium that bends rays, at every 0.05 rad
     absorbed,   // the path ends; it carries nothing on
     escaped,    // the path leaves the scene: a point at the scene's radius from where it did so
@@ -36,7 +38,8 @@ struct PathVertex {
     bool smooth = false;     // reflected or refracted in one direction only
     bool roulette = false;   // Russian roulette or the depth limit ended the path here
     glm::dvec3 position{0};  // m, in the coordinates of the scene file
-    std::string object;  // name of the material, of the medium where it scattered, of the light it came from
+    std::string object;  // name of the material, of the medium where it scattered, of the light it came from, of the
+                         // element
     std::string shape;   // name of the shape or of the mesh's node; empty where there is none
     // What the path carries when it arrives and when it goes on. Forward: lm. Backward: the share of a
     // radiance along the ray that reaches the pixel.
@@ -77,9 +80,9 @@ class PathRecorder {
   public:
     // Of the image that the settings describe: its receiver, size and seed; with forward paths as many a
     // pixel as they say. Compiles a kernel unless the device has it. `most_vertices`: of a path, at least 2;
-    // where rays are bent, so many times 4.
+    // where rays are bent, so many times 4. `inside`: also what happens within optical elements.
     PathRecorder(Device& device, Scene& scene, const RenderSettings& settings, bool forward,
-                 uint32_t most_vertices = 64);
+                 uint32_t most_vertices = 64, bool inside = false);
     ~PathRecorder();
 
     uint32_t paths_a_pass() const { return paths_; }  // pixels, or forward paths
@@ -88,11 +91,12 @@ class PathRecorder {
     std::vector<RecordedPath> record(uint64_t pass, std::span<const uint32_t> indices);
 
   private:
+    bool shows(const DeviceVertex& v) const;
     PathVertex vertex_of(const DeviceVertex& v, double unit) const;
     Device& device_;
     Scene& scene_;
     RenderSettings settings_;
-    bool forward_;
+    bool forward_, inside_;
     uint32_t room_, paths_, batch_;
     SpectralPasses spectra_;
     Views views_;

@@ -9,9 +9,14 @@ namespace {
 
 // Twin of struct View in shaders/features/views.glsl.
 struct DeviceView {
-    uint32_t receiver, index, first_pixel, width, height;
+    uint32_t receiver, index, first_pixel, width, height, element;
     float share;
 };
+
+uint32_t element_of(const Scene& scene, uint32_t receiver) {
+    const auto found = std::ranges::find(scene.receivers, receiver, &Receiver::ref);
+    return found == scene.receivers.end() ? 0 : found->element;
+}
 
 }  // namespace
 
@@ -42,6 +47,7 @@ void Views::set(std::vector<FilmView> views) {
     for (const FilmView& view : views_) {
         const uint32_t index = uint32_t(table.size());
         table.push_back({view.receiver, index, uint32_t(first_pixel(index)), view.width, view.height,
+                         element_of(scene_, view.receiver),
                          has_receptor(view) ? 1.0f : 1.0f / float(others)});
     }
     const uint32_t count = uint32_t(table.size());

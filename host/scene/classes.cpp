@@ -63,6 +63,7 @@ void read_class(const std::string& text, ClassInfo& info) {
     info.says_coverage = text.find(info.prefix + "_coverage(") != std::string::npos;
     info.is_crystal = text.find(info.prefix + "_crystal(") != std::string::npos;
     info.has_aperture = text.find("#define " + info.prefix + "_HAS_APERTURE") != std::string::npos;
+    info.never_emits = text.find("#define " + info.prefix + "_NEVER_EMITS") != std::string::npos;
     info.records_rays = text.find("#define " + info.prefix + "_RECORDS_RAYS") != std::string::npos;
     info.on_surface = text.find(info.prefix + "_at_surface(") != std::string::npos;
     info.has_receptor = text.find(info.prefix + "_receptor(") != std::string::npos;
@@ -139,8 +140,8 @@ const BlockLayout& reflected_block(const ShaderLayout& layout) {
 
 }  // namespace
 
-const std::array<InterfaceInfo, 7>& all_interfaces() {
-    static const std::array<InterfaceInfo, 7> table = {{
+const std::array<InterfaceInfo, 6>& all_interfaces() {
+    static const std::array<InterfaceInfo, 6> table = {{
         {Interface::geometry, "geometry", "geometry", "interfaces/geometry.glsl", "GEOMETRY_CLASSES",
          "GeometryRecords"},
         {Interface::light, "light", "lights", "interfaces/light_source.glsl", "LIGHT_CLASSES",
@@ -151,8 +152,6 @@ const std::array<InterfaceInfo, 7>& all_interfaces() {
          "SurfaceRecords"},
         {Interface::medium, "medium", "media", "interfaces/medium_optics.glsl", "MEDIUM_CLASSES",
          "MediumRecords"},
-        {Interface::element, "element", "elements", "interfaces/optical_element.glsl", "ELEMENT_CLASSES",
-         "ElementRecords"},
         {Interface::phase, "phase", "phases", "interfaces/phase_function.glsl", "PHASE_CLASSES",
          "PhaseRecords"},
     }};

@@ -21,7 +21,7 @@
 
 namespace etendue {
 
-enum class Interface { geometry, light, receiver, surface, medium, element, phase };
+enum class Interface { geometry, light, receiver, surface, medium, phase };
 
 struct InterfaceInfo {
     Interface interface;
@@ -31,7 +31,7 @@ struct InterfaceInfo {
     const char* table;     // macro of registry.h
     const char* buffer;    // storage buffer of the records
 };
-const std::array<InterfaceInfo, 7>& all_interfaces();
+const std::array<InterfaceInfo, 6>& all_interfaces();
 const InterfaceInfo& interface_info(Interface interface);
 
 struct Parameter {
@@ -57,6 +57,7 @@ struct ClassInfo {
     std::string summary;             // the comment at the head of the file, without the example
     std::string example;             // as it stands there, JSON; may be empty
     bool says_polarization = false;  // NAME_mueller is there
+    bool never_emits = false;        // a geometry that no light is sampled on
     bool says_coverage = false;      // NAME_coverage is there
     bool is_crystal = false;         // NAME_crystal is there: it refracts doubly
     bool has_aperture = false, has_receptor = false, is_far = false, records_rays = false,

@@ -67,14 +67,16 @@ struct MeshDescription {
     uint32_t material = 0;  // index into SceneDescription::materials (a default one is appended if needed)
 };
 
+// `content`: what holds an object, and in whose frame its place is; 0 = the scene, i = ElementContent i - 1.
 struct MeshInstance {
     uint32_t mesh = 0;
     glm::dmat4 world_from_local{1.0};
     std::string where;
     std::string name = {};  // of the node, else of the mesh
+    uint32_t content = 0;
 };
 
-// An object placed by a node: a geometry with its material, a light, a receiver or an element.
+// An object placed by a node: a geometry with its material, a light or a receiver.
 struct PlacedObject {
     std::string name;
     ObjectDescription object;
@@ -83,6 +85,22 @@ struct PlacedObject {
     bool wants_stokes = false;  // receivers: S1 to S3 are wanted, too
     glm::dvec3 stokes{0};       // lights: S1 to S3 over S0, x being the node's
     std::optional<uint32_t> shape = {};  // lights: index of the geometry at the same node
+    uint32_t content = 0;
+};
+
+// What an optical element holds, in its frame: the objects that name it as their content, within a closed boundary. Several
+// elements may hold the same, unless it has lights, receivers or elements.
+struct ElementContent {
+    std::vector<MeshInstance> boundary;  // in its frame, facing outward; none = a box around all that it holds
+    std::string where;
+};
+
+// An optical element: a black box of which the scene, or the element that holds it, knows only the boundary.
+struct PlacedElement {
+    std::string name, where;
+    uint32_t content = 0;                // index into SceneObjects::contents
+    uint32_t parent = 0;                 // 0 = the scene, i = element i - 1, which stands before this one
+    glm::dmat4 parent_from_local{1.0};   // turned and moved, not scaled
 };
 
 // 8-bit images keep their bytes; float images (.hdr, .exr) are linear.
@@ -119,7 +137,7 @@ struct LightLayer {
 
 // A class file that the scene brings along: {"interface": "surface", "file": "velvet.glsl"}.
 struct ClassFileDescription {
-    std::string interface;       // surface, geometry, light, receiver, medium, element
+    std::string interface;       // surface, geometry, light, receiver, medium, phase
     std::filesystem::path file;  // as it can be opened
     std::string where;
 };
@@ -129,7 +147,10 @@ struct SceneObjects {
     std::vector<MediumDescription> media;
     std::vector<MaterialDescription> materials;
     std::vector<MeshInstance> instances;
-    std::vector<PlacedObject> shapes, lights, receivers, elements;
+    std::vector<PlacedObject> shapes, lights, receivers;
+    std::vector<ElementContent> contents;
+    std::vector<PlacedElement> elements;
+    uint32_t boundary_material = 0;  // of elements' boundaries, where there are elements
     std::optional<ObjectDescription> environment;
 };
 

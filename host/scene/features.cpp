@@ -29,6 +29,7 @@ std::string Features::defines() const {
     define("HAS_TRIANGLES", triangles);
     define("HAS_SHAPES", shapes);
     define("HAS_INSTANCES", instances);
+    define("HAS_ELEMENTS", elements);
     define("HAS_UNROLLED_TRAVERSAL", unrolled_traversal);
     define("HAS_VERTEX_ATTRIBUTES", vertex_attributes);
     define("HAS_NORMAL_MAPS", normal_maps);
@@ -65,6 +66,7 @@ std::string Features::defines() const {
     define("TEXTURE_FORMATS", texture_formats);
     define("BVH_STACK_SIZE", bvh_stack_size);
     define("LIGHT_COUNT", light_count);
+    if (elements) define("SCENE_LIGHT_COUNT", scene_light_count);
     define("INFINITE_LIGHT_COUNT", infinite_light_count);
     text += fmt::format("#define SCENE_RADIUS {:.9e}\n", scene_radius);  // digits that tell floats apart
     return text;

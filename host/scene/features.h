@@ -13,6 +13,7 @@ struct Features {
     bool triangles = false;           // the world hierarchy holds triangles
     bool shapes = false;              // … analytic shapes
     bool instances = false;           // … instances of meshes
+    bool elements = false;            // optical elements
     bool unrolled_traversal = false;  // so few primitives that straight code tests them all
     bool vertex_attributes = false;   // normals, tangents, texture coordinates or colors
     bool normal_maps = false;
@@ -49,6 +50,7 @@ struct Features {
     uint32_t texture_formats = 7;  // of features/textures.glsl, a bit each
     uint32_t bvh_stack_size = 64;  // references that a traversal can hold back
     uint32_t light_count = 0;      // finite and infinite lights
+    uint32_t scene_light_count = 0;  // … those within no element
     uint32_t infinite_light_count = 0;
     float scene_radius = 0;  // m, of a sphere around all geometry
 

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "host/error.h"
+#include "host/geometry/turn.h"
 
 namespace etendue {
 namespace {
@@ -30,19 +31,6 @@ auto place_at(Objects& scene, uint32_t index) {
     const bool is_light = index >= scene.shapes.size();
     auto& object = is_light ? scene.lights.at(index - scene.shapes.size()) : scene.shapes[index];
     return Found{object.name, object.world_from_local, is_light};
-}
-
-// m = turn * rest, where rest has no part below its diagonal: scale along it, of which x may be negative, and
-// shear above.
-struct Parts {
-    glm::dmat3 turn, rest;
-};
-Parts parted(const glm::dmat3& m) {
-    glm::dvec3 x = glm::normalize(m[0]);
-    if (glm::determinant(m) < 0) x = -x;
-    const glm::dvec3 y = glm::normalize(m[1] - x * glm::dot(x, m[1]));
-    const glm::dmat3 turn(x, y, glm::cross(x, y));
-    return {turn, glm::transpose(turn) * m};
 }
 
 glm::dvec3 scale_of(const glm::dmat3& m) {

@@ -34,7 +34,9 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     resolver_.grid = [this](const nlohmann::json& value, const std::string& where) {
         return add_grid(value, where);
     };
-    resolver_.world_point = [this](const glm::dvec3& point) { return glm::vec3(point - out_.center); };
+    resolver_.world_point = [this](const glm::dvec3& point) {
+        return glm::vec3(is_within_element_ ? point : point - out_.center);
+    };
     resolver_.measured = [this](const std::filesystem::path& file) { return add_measured(file); };
     resolver_.mueller_table = [this](const std::filesystem::path& file) { return add_mueller_table(file); };
     resolver_.own_shape = [this](const std::string& where) { return own_shape(where); };
@@ -60,9 +62,6 @@ Scene SceneCompiler::run() {
     out_.sources.folder = options_.shaders;
     out_.sources.keep_folder();
     find_registry();
-    for (const PlacedObject& element : in_.elements)
-        fail_input("{}: optical elements are not available in this version",
-                   message_place(in_, element.object.where));
     add_geometry();
     add_media();
     add_materials();
@@ -80,6 +79,7 @@ Scene SceneCompiler::run() {
     add_textures();
     write_headers();
     measure_lights();
+    upload_elements();
     choose_polarization();
     choose_color();
     return std::move(out_);
@@ -131,7 +131,7 @@ void SceneCompiler::add_class_files() {
         if (found == interfaces.end())
             fail_input(
                 "{}/interface: there is no interface {}; allowed: geometry, light, receiver, surface, "
-                "medium, element, phase",
+                "medium, phase",
                 message_place(in_, file.where), file.interface);
         out_.registry->add_class_file(found->interface, file.file);
     }
@@ -140,8 +140,11 @@ void SceneCompiler::add_class_files() {
 void SceneCompiler::add_media() {
     add_phases();
     std::vector<Added> added;
-    for (const MediumDescription& medium : in_.media)
+    for (const MediumDescription& medium : in_.media) {
+        is_within_element_ = fills_elements(medium);
         added.push_back(add_record(Interface::medium, medium.medium));
+    }
+    is_within_element_ = false;
     const auto refs = references(Interface::medium, added);
     for (size_t i = 0; i < refs.size(); ++i) {
         resolver_.media[in_.media[i].name] = refs[i];

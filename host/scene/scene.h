@@ -33,6 +33,7 @@ struct Receiver {
     nlohmann::json parameters;         // as in the scene file
     glm::dmat4 world_from_local{1.0};  // in the coordinates of the scene file
     WatchedSurface watched;            // of a meter on a surface
+    uint32_t element = 0;              // that it is in; 0 = the scene, i = element i - 1 of the description
 };
 
 // What was compiled of a kernel, for --stats and inspect; each once a scene.
@@ -62,8 +63,9 @@ struct Scene {
     // material's), of media by RecordRef.
     std::vector<std::string> material_names, light_names;
     std::map<uint32_t, std::string> medium_names;
-    // Of instances of meshes and of shapes, and their materials'; which of them each primitive of the world
-    // is of; those of lights, empty where they have none.
+    std::vector<PlacedElement> elements;  // of the description
+    // Of instances of meshes, shapes and elements, and their materials'; which of them each primitive of the
+    // world is of; those of lights, empty where they have none.
     std::vector<std::string> placed_names, placed_materials, light_shapes;
     std::shared_ptr<const std::vector<uint32_t>> placed;
     uint64_t triangles = 0, instances = 0, shapes = 0, lights = 0, materials = 0, textures = 0;

@@ -83,6 +83,12 @@ class SceneCompiler {
     uint32_t add_mueller_table(const std::filesystem::path& file);
     void upload_measured();
 
+    // scene_elements.cpp
+    uint32_t element_of(uint32_t content) const;
+    bool fills_elements(const MediumDescription& medium) const;
+    uint32_t element_of_light(uint32_t i) const;
+    void upload_elements();
+
     // scene_geometry.cpp
     void add_geometry();  // and where its centre is, from which positions are measured
     uint64_t world_key(const std::vector<Box>& shape_bounds) const;
@@ -90,7 +96,7 @@ class SceneCompiler {
     void upload_world();
     void add_receivers();
     WatchedSurface add_watched(const std::string& mesh, const std::string& where);
-    glm::dmat4 recentred(const glm::dmat4& world_from_local) const;
+    glm::dmat4 recentred(const glm::dmat4& world_from_local, uint32_t content) const;
 
     // scene_lights.cpp
     uint32_t own_shape(const std::string& where);
@@ -138,7 +144,7 @@ class SceneCompiler {
     std::map<Interface, RecordBuffer> records_;
     std::vector<TextureUse> textures_;
     std::vector<DensityGridRecord> grids_;
-    std::vector<glm::dmat4> grid_placements_;  // world_from_lattice
+    std::vector<glm::dmat4> grid_placements_;  // device_from_lattice
     bool uses_measured_ = false, has_sky_ = false;
     std::vector<MuellerTable> mueller_tables_;
     SpectralValue surrounding_;  // index of the medium whose phase function is being added
@@ -154,6 +160,8 @@ class SceneCompiler {
     std::vector<LightStokes> light_stokes_;                        // … as well
     uint32_t first_area_light_ = 0;                                // in lights_, before they are sorted
     std::vector<uint32_t> area_primitives_;                        // of each area light
+    bool is_within_element_ = false;  // what is being added
+    std::vector<uint32_t> light_elements_;  // of the sorted lights: that they are in
     uint32_t opening_ = no_record;                                 // primitive of the light being added
     std::vector<uint32_t> opening_lights_;                         // … of each placed light
 };

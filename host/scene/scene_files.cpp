@@ -41,7 +41,7 @@ Paths files_of(const SceneDescription& scene) {
         add(material.surface.parameters);
         if (material.emission) add(material.emission->value), add(material.emission->spectrum);
     }
-    for (const auto* objects : {&scene.shapes, &scene.lights, &scene.receivers, &scene.elements})
+    for (const auto* objects : {&scene.shapes, &scene.lights, &scene.receivers})
         for (const PlacedObject& object : *objects) add(object.object.parameters);
     if (scene.environment) add(scene.environment->parameters);
     return files;

@@ -8,16 +8,46 @@
 
 namespace etendue {
 
-glm::dmat4 SceneCompiler::recentred(const glm::dmat4& world_from_local) const {
+// Contents of elements have frames of their own.
+glm::dmat4 SceneCompiler::recentred(const glm::dmat4& world_from_local, uint32_t content) const {
     glm::dmat4 result = world_from_local;
-    result[3] -= glm::dvec4(out_.center, 0);
+    if (content == 0) result[3] -= glm::dvec4(out_.center, 0);
     return result;
+}
+
+// Elements of a microstructure that reach out of their cells would be cut off there.
+static void check_cells(const ClassInfo& info, const ObjectDescription& object, const std::string& place) {
+    const auto value = [&](const char* name) {
+        const auto parameter = std::ranges::find(info.parameters, std::string(name),
+                                                 [](const Parameter& p) { return p.member.name; });
+        return object.parameters.value(name, parameter->default_value);
+    };
+    const auto size = value("size").get<std::vector<double>>(), pitch = value("pitch").get<std::vector<double>>();
+    const std::string shape = value("shape");
+    const bool is_ridge = shape == "groove" || shape == "lens", is_round = shape == "dome" || shape == "lens";
+    const double radius = value("radius"), depth = value("depth"), turn = value("turn"), least = 1 - 1e-6;
+    const double reach = radius * (shape == "prism" ? std::abs(std::cos(turn)) + std::abs(std::sin(turn)) : 1.0);
+    for (size_t axis = 0; axis < (is_ridge ? 1 : 2); ++axis) {
+        if (2 * reach * least > pitch[axis])
+            fail_input("{}/radius: elements are {:g} m wide and reach beyond their cells of {:g} m; allowed: at "
+                       "most {:g}", place, 2 * reach, pitch[axis], radius * pitch[axis] / (2 * reach));
+        if (pitch[axis] * least > size[axis])
+            fail_input("{}/pitch: {:g} m is more than the size of {:g} m", place, pitch[axis], size[axis]);
+    }
+    if (is_round && depth * least > radius)
+        fail_input("{}/depth: {:g} m; allowed for a {}: at most the radius of {:g} m", place, depth, shape, radius);
 }
 
 void SceneCompiler::add_geometry() {
     std::vector<Added> shapes;
-    for (const PlacedObject& shape : in_.shapes)
+    for (const PlacedObject& shape : in_.shapes) {
         shapes.push_back(add_record(Interface::geometry, shape.object));
+        if (shapes.back().info->never_emits && in_.materials[shape.material].emission)
+            fail_input("{}/material: emits light, which a {} cannot; allowed: a material that does not",
+                       message_place(in_, shape.object.where), shape.object.class_name);
+        if (shape.object.class_name == "microstructure")
+            check_cells(*shapes.back().info, shape.object, message_place(in_, shape.object.where));
+    }
     const auto refs = references(Interface::geometry, shapes);
     const std::vector<Box> bounds = shape_bounds(refs);
     const uint64_t key = world_key(bounds);
@@ -30,7 +60,7 @@ void SceneCompiler::add_geometry() {
         memory_.light_positions.clear();
         world = build_world(in_, bounds, refs, threads_, memory_.world_features);
         memory_.unrolled_traversal.clear();
-        if (!has_bodies() && !memory_.world_features.twins && !options_.varying.count("places") &&
+        if (in_.elements.empty() && !has_bodies() && !memory_.world_features.twins && !options_.varying.count("places") &&
             device_.description.compiles_choices)
             memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
         memory_.world_key = key;
@@ -51,6 +81,8 @@ void SceneCompiler::add_geometry() {
     for (const MeshInstance& instance : in_.instances)
         add_placed(instance.name, in_.meshes[instance.mesh].material);
     for (const PlacedObject& shape : in_.shapes) add_placed(shape.name, shape.material);
+    for (const PlacedElement& element : in_.elements) add_placed(element.name, in_.boundary_material);
+    out_.features.elements = !in_.elements.empty();
     out_.center = world.center;
     out_.radius = world.bounds.empty() ? 0.0f : 0.5f * glm::length(world.bounds.hi - world.bounds.lo);
     out_.triangles = world.triangles, out_.instances = world.instances, out_.shapes = in_.shapes.size();
@@ -70,11 +102,20 @@ uint64_t SceneCompiler::world_key(const std::vector<Box>& shape_bounds) const {
         key = hash_text(shape.object.class_name, key);
         add(shape.world_from_local);
         add(shape.material);
+        add(shape.content);
     }
     for (const MeshInstance& instance : in_.instances) {
         add(instance.mesh);
         add(instance.world_from_local);
+        add(instance.content);
     }
+    for (const PlacedElement& element : in_.elements) {
+        add(element.content);
+        add(element.parent);
+        add(element.parent_from_local);
+    }
+    for (const ElementContent& content : in_.contents)
+        for (const MeshInstance& instance : content.boundary) add(instance.mesh);
     for (const MaterialDescription& m : in_.materials) add(m.emission.has_value());
     for (const bool watched : all_watched(in_)) add(watched);
     return key;
@@ -126,6 +167,9 @@ WatchedSurface SceneCompiler::add_watched(const std::string& mesh, const std::st
     if (instances.empty())
         fail_input("{}: there is no mesh, and no node with one, called {}", place, mesh);
     for (const uint32_t i : instances) {
+        if (in_.instances[i].content != 0)
+            fail_input("{}: {} is within an optical element; allowed: a mesh of the scene", place,
+                       in_.instances[i].name);
         const MaterialDescription& material = in_.materials[in_.meshes[in_.instances[i].mesh].material];
         if (material.priority > 0)
             fail_input("{}: {} bounds a body with a priority; allowed: a mesh without", place, material.name);
@@ -157,9 +201,13 @@ void SceneCompiler::add_receivers() {
         ObjectDescription object = receiver.object;
         const float aspect = object.parameters.value("aspect_ratio", 0.0f);
         object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
-        added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local)));
+        added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local, receiver.content)));
         out_.receivers.push_back({receiver.name, no_record, aspect, 0, 0, receiver.wants_stokes,
                                   added.back().info, object.parameters, receiver.world_from_local});
+        out_.receivers.back().element = element_of(receiver.content);
+        if (receiver.content != 0 && (added.back().info->is_far || added.back().info->on_surface))
+            fail_input("{}: a receiver of class {} cannot be within an optical element; allowed: in the scene",
+                       message_place(in_, object.where), object.class_name);
         fix_resolution(out_.receivers.back(), message_place(in_, object.where));
         if (!added.back().info->on_surface) continue;
         Receiver& meter = out_.receivers.back();
@@ -178,7 +226,7 @@ void move_receiver(Scene& scene, size_t index, const glm::dmat4& world_from_loca
     SceneDescription place;  // for messages
     place.file = "receiver " + receiver.name;
     glm::dmat4 placement = world_from_local;
-    placement[3] -= glm::dvec4(scene.center, 0);
+    if (receiver.element == 0) placement[3] -= glm::dvec4(scene.center, 0);
     const double volume = glm::determinant(glm::dmat3(placement));
     if (!std::isfinite(volume) || volume == 0)
         fail_input("{}: its placement squashes space flat", place.file.string());

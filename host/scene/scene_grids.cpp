@@ -96,14 +96,14 @@ uint32_t SceneCompiler::add_grid(const json& value, const std::string& where) {
     const glm::dmat4 world_from_lattice = placement(object, place) * known->second.world_from_lattice;
     check_placement(world_from_lattice, place);
     grids_.push_back(known->second.record);
-    grid_placements_.push_back(world_from_lattice);
+    grid_placements_.push_back(recentred(world_from_lattice, is_within_element_ ? 1 : 0));
     return uint32_t(grids_.size() - 1);
 }
 
 void SceneCompiler::upload_grids() {
     if (grids_.empty()) return;
     for (size_t i = 0; i < grids_.size(); ++i) {
-        const glm::dmat4 m = glm::inverse(recentred(grid_placements_[i]));
+        const glm::dmat4 m = glm::inverse(grid_placements_[i]);
         for (int c = 0; c < 4; ++c) grids_[i].lattice_from_world[c] = glm::vec3(m[c]);
     }
     upload("DensityGrids", grids_);

@@ -151,7 +151,7 @@ void SceneCompiler::add_lights() {
     light_stokes_.assign(infinite.size(), {});
     for (const PlacedObject& light : in_.lights) {
         opening_ = no_record;
-        const Added added = add_record(Interface::light, light.object, recentred(light.world_from_local));
+        const Added added = add_record(Interface::light, light.object, recentred(light.world_from_local, light.content));
         opening_lights_.push_back(opening_);
         finite.push_back(added);  // sorted by what measure_lights finds
         light_names_.push_back(light.name);
@@ -263,6 +263,8 @@ void SceneCompiler::measure_lights() {
     std::vector<uint32_t> order(lights_.size());
     for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return is_at_infinity(bounds[i]); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return element_of_light(a) < element_of_light(b); });
     std::vector<uint32_t> sorted_lights;
     std::vector<LightStokes> sorted_stokes;
     std::vector<LightBounds> sorted_bounds;
@@ -276,7 +278,11 @@ void SceneCompiler::measure_lights() {
         out_.light_names.push_back(light_names_[i]);
         out_.light_shapes.push_back(primitive == no_record ? ""
                                                            : out_.placed_names[out_.placed->at(primitive)]);
-        sorted_bounds.push_back(bounds[i]);
+        light_elements_.push_back(element_of_light(i));
+        if (light_elements_.back() == 0) sorted_bounds.push_back(bounds[i]);
+        else if (is_at_infinity(bounds[i]))
+            fail_input("{}: light {} shines from infinity within an optical element; allowed: in the scene",
+                       in_.file.string(), light_names_[i]);
         powers.push_back(bounds[i].power);
         if (is_unmet(bounds[i])) out_.unmet_lights.push_back(light_names_[i]);
         out_.power += bounds[i].power;
@@ -284,6 +290,7 @@ void SceneCompiler::measure_lights() {
     }
     const LightTree tree = build_light_tree(sorted_bounds);
     out_.features.light_tree = tree.is_tree;
+    out_.features.scene_light_count = uint32_t(sorted_bounds.size());
     out_.features.infinite_light_count = tree.infinite_count;
     upload("Lights", sorted_lights);
     if (out_.features.polarized_lights) upload("LightStokesTable", sorted_stokes);

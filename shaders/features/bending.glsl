@@ -22,15 +22,6 @@ void direct(inout Path path, vec3 direction) {
     path.direction = direction;
 }
 
-// Nothing samples or connects the next event from the one before.
-void forget_event(inout Path path) {
-    path.pdf = 0.0;
-    path.reference = path.origin;
-    start_passage(path);
-    forget_weights(path);
-    path.flags &= ~(PATH_STARTS | PATH_PARALLEL);
-}
-
 // Readies the path for its next ray and returns where that ends at the latest (features/receptors.glsl: begin_ray).
 float begin_step(inout Path path) {
     float longest = path.bend.chord;

@@ -56,6 +56,12 @@
 #ifndef HAS_TRIANGLES
 #define HAS_TRIANGLES 0
 #endif
+#ifndef HAS_ELEMENTS
+#define HAS_ELEMENTS 0
+#endif
+#ifndef SCENE_LIGHT_COUNT
+#define SCENE_LIGHT_COUNT LIGHT_COUNT
+#endif
 #ifndef HAS_SHAPES
 #define HAS_SHAPES 0
 #endif

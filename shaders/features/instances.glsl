@@ -16,7 +16,7 @@ void enter_instance(inout Traversal w, Triangle primitive, uint index, bool last
 void leave_instance(inout Traversal w) {
     if (w.node != BVH_RETURN) return;
     w.instance = NO_RECORD;
-    traversal_enter(w, WORLD_HEADER, w.world_origin, w.world_direction);
+    traversal_enter(w, tree_header(), w.world_origin, w.world_direction);
     w.height--;
     w.node = traversal_stack[w.height];
 }

@@ -8,8 +8,11 @@
 // for the same work). host/lights/light_tree.h builds it. The receiving normal is left out, so that a ray that
 // hits a light later can tell the probability from its origin alone.
 //
-// The host defines LIGHT_COUNT, INFINITE_LIGHT_COUNT and HAS_LIGHT_TREE (0: the nodes are a list, to be read
-// in order).
+// Lights within optical elements come last. There, one of the same element is chosen, all with the same probability.
+//
+// The host defines LIGHT_COUNT, SCENE_LIGHT_COUNT (those that are in no element), INFINITE_LIGHT_COUNT and HAS_LIGHT_TREE (0: the
+// nodes are a list, to be read in order).
+#include "features/elements.glsl"
 
 #include "lib/constants.glsl"
 #include "lib/records.glsl"
@@ -17,9 +20,9 @@
 layout(scalar, set = 0) readonly buffer Lights { uint lights[]; };  // RecordRefs
 
 const bool HAS_LIGHTS = LIGHT_COUNT > 0;
-const uint FINITE_LIGHT_COUNT = uint(LIGHT_COUNT - INFINITE_LIGHT_COUNT);
+const uint FINITE_LIGHT_COUNT = uint(SCENE_LIGHT_COUNT - INFINITE_LIGHT_COUNT);
 const float INFINITE_LIGHT_PROBABILITY = 
-    1.0 / float(max(1, INFINITE_LIGHT_COUNT + (LIGHT_COUNT > INFINITE_LIGHT_COUNT ? 1 : 0)));
+    1.0 / float(max(1, INFINITE_LIGHT_COUNT + (SCENE_LIGHT_COUNT > INFINITE_LIGHT_COUNT ? 1 : 0)));
 const float FINITE_LIGHTS_PROBABILITY = INFINITE_LIGHT_COUNT > 0 ? INFINITE_LIGHT_PROBABILITY : 1.0;
 
 // Takes the first of two outcomes with probability p and stretches u in [0,1) anew over the outcome's part.
@@ -29,7 +32,7 @@ bool choose_first(float p, inout float u) {
     return first;
 }
 
-#if LIGHT_COUNT > 1 && LIGHT_COUNT > INFINITE_LIGHT_COUNT
+#if SCENE_LIGHT_COUNT > 1 && SCENE_LIGHT_COUNT > INFINITE_LIGHT_COUNT
 // Four sets of finite lights, component by component; 128 bytes.
 struct LightNode {
     vec4 x, y, z;      // m, centre of a sphere around all lights of the set
@@ -175,11 +178,11 @@ float finite_light_probability(uint light, vec3 point) {
 uint select_light(vec3 point, float u, out float probability, out float u_remapped) {
     u_remapped = u;
     probability = 1.0;
-#if LIGHT_COUNT <= 1
+#if SCENE_LIGHT_COUNT <= 1
     return 0u;
-#elif LIGHT_COUNT == INFINITE_LIGHT_COUNT
-    u_remapped *= float(LIGHT_COUNT);
-    uint light = min(uint(u_remapped), uint(LIGHT_COUNT) - 1u);
+#elif SCENE_LIGHT_COUNT == INFINITE_LIGHT_COUNT
+    u_remapped *= float(SCENE_LIGHT_COUNT);
+    uint light = min(uint(u_remapped), uint(SCENE_LIGHT_COUNT) - 1u);
     u_remapped = min(u_remapped - float(light), 1.0 - EPSILON);
     probability = INFINITE_LIGHT_PROBABILITY;
     return light;
@@ -198,11 +201,35 @@ uint select_light(vec3 point, float u, out float probability, out float u_remapp
 #endif
 }
 
-// The probability with which select_light chooses `light` for `point`.
+#if HAS_ELEMENTS
+#define SELECTS_LIGHTS true
+// … where the point is in an element, or in the scene.
+uint select_light_at(uint element, vec3 point, float u, out float probability) {
+    float unused;
+    Element e = elements[element];
+    bool is_scene = element == NOT_IN_ELEMENT;
+    probability = 0.0;
+    if (is_scene && SCENE_LIGHT_COUNT > 0) return select_light(point, u, probability, unused);
+    if (is_scene || e.light_count == 0u) return 0u;
+    probability = 1.0 / float(e.light_count);
+    return e.first_light + min(uint(u * float(e.light_count)), e.light_count - 1u);
+}
+#else
+#define SELECTS_LIGHTS (LIGHT_COUNT > 1)
+uint select_light_at(uint element, vec3 point, float u, out float probability) {
+    float unused;
+    return select_light(point, u, probability, unused);
+}
+#endif
+
+// The probability with which select_light_at chooses `light` for `point`, where it is.
 float light_selection_probability(uint light, vec3 point) {
-#if LIGHT_COUNT <= 1
+#if HAS_ELEMENTS
+    if (light >= uint(SCENE_LIGHT_COUNT)) return 1.0 / float(elements[light_elements[light]].light_count);
+#endif
+#if SCENE_LIGHT_COUNT <= 1
     return 1.0;
-#elif LIGHT_COUNT == INFINITE_LIGHT_COUNT
+#elif SCENE_LIGHT_COUNT == INFINITE_LIGHT_COUNT
     return INFINITE_LIGHT_PROBABILITY;
 #else
     if (light < uint(INFINITE_LIGHT_COUNT)) return INFINITE_LIGHT_PROBABILITY;

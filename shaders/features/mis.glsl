@@ -20,6 +20,7 @@
 // - The merging radius varies over space, so vc is kept without a twin in units of merging (dVM = dVC / density there).
 #include "features/beams.glsl"
 #include "features/dispersion.glsl"
+#include "features/elements.glsl"
 #include "features/merging.glsl"
 #include "features/weights.glsl"
 #include "interfaces/light_source.glsl"
@@ -44,7 +45,10 @@ const float CONNECTION_SHARE = CONNECT_VERTICES == 1 ? 0.3 : 0.0;
 
 // How often the newest vertex is connected to from the other side: the first of a path always, by sampling lights or connecting to
 // the receiver.
-float connects(Path path) { return (path.flags & PATH_STARTS) != 0u ? 1.0 : CONNECTION_SHARE; }
+float connects(Path path) {
+    if ((path.flags & PATH_STARTS) != 0u) return 1.0;
+    return within_element(path) ? 0.0 : CONNECTION_SHARE;
+}
 
 // Flags of a light vertex.
 const uint VERTEX_STARTS = 0x20000000u;      // the first of its path
@@ -97,6 +101,7 @@ VertexMis vertex_mis(Path path, SurfacePoint p, ScatteringPoint s) {
 #endif
     }
     m.vc = (path.vc + (merged_before ? path.pending : 0.0)) * to_area;
+    if (within_element(path)) m.merging = 0.0, m.along = false;
     return m;
 }
 

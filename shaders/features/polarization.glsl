@@ -134,6 +134,12 @@ void turn_polarization(inout Path path, vec3 before, vec3 after) {
     path.polarization = turned(path.polarization, double_angle(axis, stokes_axis(b), b));
 }
 
+// The path goes on in another frame, whose axes are turned: `after` is its direction there.
+void turn_frame(inout Path path, mat3 turn, vec3 after) {
+    vec3 a = FORWARD == 1 ? path.direction : -path.direction, b = FORWARD == 1 ? after : -after;
+    path.polarization = turned(path.polarization, double_angle(turn * stokes_axis(a), stokes_axis(b), b));
+}
+
 // What forward vertices keep: light as it arrives, in half precision (an error of 5e-4).
 PackedPolarization packed_polarization(Polarization p) {
     PackedPolarization packed;
@@ -218,6 +224,7 @@ Received analysed(ShadowRay shadow, Spectrum brought) {
 #define carry_polarization(shadow, path)
 #define polarize_passage(shadow, s)
 #define turn_polarization(path, before, after)
+#define turn_frame(path, turn, after)
 #define keep_polarization(v, path)
 #define merged_light(brought, path, s, mueller, y) brought
 #define polarize_end(shadow, y, there, mueller)

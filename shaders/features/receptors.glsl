@@ -26,6 +26,7 @@ uint next_receptor(Path path, out ReceptorHit nearest) {
     nearest = no_receptor_hit();
     for (uint v = 0u; v < VIEW_COUNT; ++v) {
         if ((path.flags >> (PATH_PASSED_SHIFT + v) & 1u) != 0u) continue;
+        if (!same_element(path, views[v])) continue;
         ReceptorHit r = receiver_receptor(views[v].receiver, path.origin, path.direction);
         if (!(r.t < nearest.t)) continue;
         nearest = r;

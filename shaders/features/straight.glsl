@@ -39,6 +39,7 @@ const bool SHADOWS_ARE_SEARCHES = HAS_STRAIGHT == 0 && HAS_MEDIA == 0;
 // normal: it is aimed at its end again, or a light that it meets at a grazing angle would hide itself.
 Brought follow_shadow_ray(ShadowRay shadow) {
     float t_left = shadow.t_max;
+    locate_ray(shadow.location);
     vec3 direction = shadow.direction;
     while (true) {
         Hit hit = find_hit(shadow.origin, direction, t_left);
@@ -73,6 +74,7 @@ Brought follow_shadow_ray(ShadowRay shadow) {
 #define origin_of_next(path, p, direction, straight) offset_origin(p.position, p.error, p.geometric_normal, direction)
 
 Brought follow_shadow_ray(ShadowRay shadow) {
+    locate_ray(shadow.location);
     if (find_occlusion(shadow.origin, shadow.direction, shadow.t_max)) return nothing_brought();
     pass_medium(shadow, shadow.t_max);
     return brought_by(shadow, analysed(shadow, weighed(shadow)));

@@ -10,6 +10,7 @@ struct View {
     uint index;          // among the views
     uint first_pixel;
     uint width, height;  // of its film
+    uint element;        // that it is in (features/elements.glsl)
     float share;         // of the forward vertices that are connected to it, where others are to other views; at receptors 1
 };
 layout(scalar, set = 0) readonly buffer Views { uint all_views; View views[]; };

@@ -42,6 +42,15 @@ void lessen_others(inout ShadowRay ray, float passage) {
 #define lessen_others(ray, passage)
 #endif
 
+// Nothing samples or connects the next event from the one before.
+void forget_event(inout Path path) {
+    path.pdf = 0.0;
+    path.reference = path.origin;
+    start_passage(path);
+    forget_weights(path);
+    path.flags &= ~(PATH_STARTS | PATH_PARALLEL);
+}
+
 // The density of others that needs no passage, and what the ray brings where nothing has stopped it.
 #if BEAMS
 void weigh_apart(inout ShadowRay ray, float others) { ray.others_apart = others; }

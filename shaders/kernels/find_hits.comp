@@ -1,5 +1,5 @@
 // find_hits: the nearest hit of every ray of a queue, or with ANY_HIT any.
-// Reads: ray_origins (xyz), ray_directions (xyz, w = t_max), with HAS_RAY_QUEUE the queue of ray indices. Writes: hits. No barrier.
+// Reads: ray_origins (xyz, w = location), ray_directions (xyz, w = t_max), with HAS_RAY_QUEUE the queue of ray indices. Writes: hits. No barrier.
 // Each lane walks one ray after the other, statically strided, so that lanes whose rays are short stay at work.
 #include "features/defaults.glsl"
 #include "features/ray_queue.glsl"
@@ -24,6 +24,7 @@ void main() {
             ray = queued_ray(next);
             next += stride;
             vec4 direction = ray_directions[ray];
+            locate_ray(floatBitsToUint(ray_origins[ray].w));
             traversal_begin(walk, ray_origins[ray].xyz, direction.xyz, direction.w, ANY_HIT == 1);
         }
         traversal_step(walk, ANY_HIT == 1);

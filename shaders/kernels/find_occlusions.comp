@@ -44,6 +44,7 @@ void main() {
                 ray = first_ray + next;
                 next += stride;
                 counters.shadow_rays++;
+                locate_ray(shadow_rays[ray].location);
                 traversal_begin(walk, shadow_rays[ray].origin, shadow_rays[ray].direction, shadow_rays[ray].t_max, true);
             }
             traversal_step(walk, true);

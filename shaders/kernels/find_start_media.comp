@@ -19,6 +19,7 @@ layout(push_constant) uniform Push {
 };
 
 #include "interfaces/light_source.glsl"
+#include "features/boundaries.glsl"
 #include "features/faces.glsl"
 #include "features/views.glsl"
 #include "lib/materials.glsl"
@@ -39,6 +40,7 @@ const uint MOST_ENTERED = 16u;   // media within each other, likewise
 struct Witness {
     vec3 origin, direction;
     uint light;                  // that it starts at
+    MEMBER_IF(HAS_ELEMENTS, uint location;)
     bool turns;                  // halfway to what it meets, so that it meets the light's own surface next
     uint surfaces;
     uint entered[MOST_ENTERED];  // media, and not left again
@@ -62,6 +64,7 @@ bool begin_witness(uint question, uint k, bool is_first, out Witness w) {
     w.light = NO_RECORD - 1u;  // not that of surfaces that are no lights
     if (question < VIEW_COUNT) {
         View view = views[question];
+        start_location(w, view.element);
         w.origin = receiver_emit(view.receiver, u_position, u_direction, film_aspect(view)).origin;
         return true;
     }
@@ -69,6 +72,7 @@ bool begin_witness(uint question, uint k, bool is_first, out Witness w) {
     if (OF_LIGHTS == 0) return false;
     w.light = question / 2u;
     if (w.light < uint(INFINITE_LIGHT_COUNT)) return false;
+    start_location(w, location_of_light(w.light));
     EmittedRay ray = light_emit(lights[w.light], scene_bounds(), u_position, u_direction);
     w.origin = offset_origin(ray.origin, ray.error, ray.normal, ray.direction);
     w.turns = is_first;
@@ -110,6 +114,11 @@ bool pass_surface(inout Witness w, SurfacePoint p, out uint medium) {
 // … and through that surface. True: the ray need go no further. Bodies with priorities need the whole ray.
 bool pass_hit(inout Witness w, Hit hit) {
     SurfacePoint p = locate(hit, w.origin, w.direction);
+    if (meets_boundary(hit)) {
+        if (++w.surfaces >= MOST_SURFACES) w.weight = 0;
+        go_through_boundary(w.origin, w.direction, w.location, hit, p);
+        return w.weight == 0;
+    }
     Crossing c = meet_faces(w.origin, w.direction, w.since, hit, p);
     count_bodies_left(w.answer, w.since, surroundings_towards(c, p, -w.direction));
     w.since = surroundings_towards(c, p, w.direction);
@@ -136,6 +145,7 @@ void main() {
             if (!walks) done = ++k == RAYS;
         }
         if (walks) {
+            locate_ray(w.location);
             Hit hit = find_hit(w.origin, w.direction, INFINITY);
             bool answers = !w.turns;
             if (w.turns) {

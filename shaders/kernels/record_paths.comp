@@ -23,11 +23,14 @@ const uint RECORDED_EMISSION = 16u;
 const uint RECORDED_ESCAPE = 32u;
 const uint RECORDED_ROULETTE = 64u;  // the event was the last one by Russian roulette or the depth limit
 const uint RECORDED_BEND = 128u;     // a point of a bent ray
+const uint RECORDED_ENTER = 256u;    // an optical element
+const uint RECORDED_LEAVE = 512u;    // … again
 struct DeviceVertex {
     vec3 position;
     uint event;
     uint material, light, medium;  // medium: that the ray arrives in
     uint primitive;                // of the world, that was hit
+    uint element;                  // where it is, or that is entered or left; 0 = the scene
     float arriving, leaving;       // luminance of what the path carries
     vec3 rgb;                      // … its colour behind the event
     vec4 throughput;               // … lane by lane
@@ -61,19 +64,23 @@ void main() {
     vec3 stokes, axis;
     recorded_polarization(path, stokes, axis);
     path_vertices[i * room] =
-        DeviceVertex(path.origin, RECORDED_EMISSION, NO_RECORD, light, path.around.medium, NO_RECORD, carried, carried,
-                     spectrum_rgb(path.throughput), all_lanes(path.throughput), stokes, axis);
+        DeviceVertex(in_scene(element_of(path), path.origin, 1.0), RECORDED_EMISSION, NO_RECORD, light, path.around.medium,
+                     NO_RECORD, element_of(path), carried, carried,
+                     spectrum_rgb(path.throughput), all_lanes(path.throughput), stokes,
+                     in_scene(element_of(path), axis, 0.0));
     path_counts[i] = 1u;
     Counters counters;
     bool alive = !is_black(path.throughput);
-    vec3 drawn = path.direction;  // of the line behind the last vertex
+    vec3 drawn = in_scene(element_of(path), path.direction, 0.0);  // of the line behind the last vertex
     for (uint n = 1u; alive && n < room;) {
         DeviceVertex v;
         v.medium = path.around.medium;
         float end = begin_ray(path);
         vec3 origin = path.origin, direction = path.direction;
+        uint element = element_of(path);
         recorded_event.happened = recorded_event.followed = false;
         bool bends = is_bent(path);
+        locate_ray(path.location);
         Hit hit = find_hit(origin, direction, end);
         ShadowRay shadow, vertex_shadow;
 #if FORWARD
@@ -82,11 +89,15 @@ void main() {
         alive = scatter_path(path, hit, counters, shadow, vertex_shadow);
 #endif
         // Where a bent ray ends a step, having turned so far that a line would no longer do.
-        bool is_bend = bends && hit.primitive == NO_RECORD && dot(path.direction, drawn) < cos(BEND_ANGLE);
-        if (alive && !recorded_event.happened && !is_bend) continue;  // past faces that are not there, or along a bent ray
-        bool escapes = !recorded_event.happened && !is_bend, ends = recorded_event.happened && !recorded_event.followed;
-        v.position = escapes ? origin + SCENE_RADIUS * direction : is_bend ? path.origin : recorded_event.position;
-        v.event = escapes ? RECORDED_ESCAPE : is_bend ? RECORDED_BEND : ends ? EVENT_NONE : recorded_event.event;
+        vec3 turned = in_scene(element_of(path), path.direction, 0.0);
+        bool is_bend = bends && hit.primitive == NO_RECORD && dot(turned, drawn) < cos(BEND_ANGLE);
+        bool crosses = element_of(path) != element, enters = crosses && parent_of(element_of(path)) == element;
+        if (alive && !recorded_event.happened && !is_bend && !crosses) continue;  // past faces that are not there, or along a bent ray
+        bool escapes = !recorded_event.happened && !is_bend && !crosses, ends = recorded_event.happened && !recorded_event.followed;
+        v.position = escapes ? origin + SCENE_RADIUS * direction : is_bend || crosses ? path.origin : recorded_event.position;
+        v.position = in_scene(crosses ? element_of(path) : element, v.position, 1.0);
+        v.element = enters ? element_of(path) : element;
+        v.event = crosses ? (enters ? RECORDED_ENTER : RECORDED_LEAVE) : escapes ? RECORDED_ESCAPE : is_bend ? RECORDED_BEND : ends ? EVENT_NONE : recorded_event.event;
         if (!escapes && !ends && !alive) v.event |= RECORDED_ROULETTE;
         v.material = recorded_event.happened ? recorded_event.material : NO_RECORD;
         v.light = recorded_event.happened ? recorded_event.light : NO_RECORD;
@@ -98,8 +109,9 @@ void main() {
         v.rgb = spectrum_rgb(path.throughput);
         v.throughput = all_lanes(path.throughput);
         recorded_polarization(path, v.stokes, v.axis);
+        v.axis = in_scene(element_of(path), v.axis, 0.0);
         path_vertices[i * room + n] = v;
         path_counts[i] = ++n;
-        drawn = path.direction;
+        drawn = turned;
     }
 }

@@ -22,7 +22,7 @@ layout(scalar, set = 0) writeonly buffer SeenPoints { SeenPoint seen_points[]; }
 void main() {
     CameraRay ray = receiver_emit(receiver, vec2(film_x, film_y), vec2(0.5), aspect);
     SeenPoint seen = SeenPoint(0u, vec3(0), vec3(0), 0.0, 0u, NO_RECORD);
-    Path path = emit_camera_ray(View(receiver, 0u, 0u, 1u, 1u, 1.0), 0u, 0u, 0u);
+    Path path = emit_camera_ray(View(receiver, 0u, 0u, 1u, 1u, views[0].element, 1.0), 0u, 0u, 0u);
     path.origin = ray.origin, path.direction = ray.direction;
     FirstHit first = find_first(path);
     SurfacePoint p = first.p;

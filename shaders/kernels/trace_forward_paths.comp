@@ -24,6 +24,7 @@ void main() {
         if (alive) {
             counters.rays++;
             float end = begin_ray(path);
+            locate_ray(path.location);
             Hit hit = find_hit(path.origin, path.direction, end);
             ShadowRay shadow;
             alive = scatter_forward_path(path, hit, index, counters, shadow);

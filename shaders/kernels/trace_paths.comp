@@ -32,6 +32,7 @@ void main() {
         }
         counters.rays++;
         float end = begin_ray(path);
+        locate_ray(path.location);
         Hit hit = find_hit(path.origin, path.direction, end);
         ShadowRay shadow, vertex_shadow;
         alive = scatter_path(path, hit, counters, shadow, vertex_shadow);

@@ -9,6 +9,7 @@
 // primitives[i] is an entry of `primitives`, struct Triangle. Its attributes' upper two bits are the kind:
 //     triangle   the vertices; index = its place in the mesh's lists of vertex indices
 //     shape      v0.x RecordRef of the geometry, v0.y index of its transform (bits)
+//     boundary   the vertices; index = the element that it leads to (features/elements.glsl)
 //     instance   v0.x header of the mesh's own tree, v0.y index of its transform (bits)
 #include "lib/constants.glsl"
 #include "lib/records.glsl"

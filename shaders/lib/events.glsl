@@ -28,6 +28,7 @@ ShadowRay shadow_ray(Path path, SurfacePoint p, ScatteringPoint s, Scattering pa
     shadow.direction = direction;
     shadow.t_max = distance >= INFINITY ? INFINITY : max(0.0, shadow_t_max(shadow.origin, distance));
     shadow.around = surroundings_towards(s, direction);
+    locate_shadow(shadow, path);
     if (bends_rays(shadow.around.medium)) shadow.t_max = 0.0;
     polarize_shadow(shadow, path, s, pair.mueller);
     turn_history(shadow, path, s);
@@ -68,6 +69,7 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
     path.origin = origin_of_next(path, p, direction, straight);
     path.direction = direction;
     path.around = surroundings_towards(s, direction);
+    settle(path);
     keep_mode(path, event.mode);
     record_departure();
     return true;

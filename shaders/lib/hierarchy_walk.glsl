@@ -3,6 +3,8 @@
 // On a CPU driver the lanes of a subgroup walk their rays together, so a step of the walk does at most one inner
 // node and at most one primitive for each lane, and pushes and pops by selects instead of branches.
 
+#include "features/elements.glsl"
+
 struct Traversal {
     vec3 origin, direction;  // in the frame being walked
     RayShear shear;
@@ -33,13 +35,15 @@ void traversal_enter(inout Traversal w, uint header, vec3 origin, vec3 direction
 }
 
 #include "features/instances.glsl"
+#include "features/boundary_hits.glsl"
 #include "features/twins.glsl"
 
 void traversal_begin(out Traversal w, vec3 origin, vec3 direction, float t_max, const bool any_hit) {
     w.hit = Hit(t_max, vec2(0), NO_RECORD, NO_RECORD);
     w.after = Hit(0.0, vec2(0), NO_RECORD, NO_RECORD);
-    traversal_enter(w, WORLD_HEADER, origin, direction);
-    w.node = nodes[WORLD_HEADER].w;
+    uint header = tree_header();
+    traversal_enter(w, header, origin, direction);
+    w.node = nodes[header].w;
     traversal_stack[0] = BVH_NOTHING;
     w.height = 1u;
     w.world_origin = origin;
@@ -75,6 +79,7 @@ void traversal_step(inout Traversal w, const bool any_hit) {
         bool met = false;
         if (is_triangle(primitive.attributes))
             met = triangle_meet(w.shear, w.origin, w.direction, primitive.v0, primitive.v1, primitive.v2, hit_limit(w.hit), found);
+        judge_boundary(w, primitive, met, found);
         if (is_shape(primitive.attributes)) {
             mat4x3 m = transform_at(floatBitsToUint(primitive.v0.y)).local_from_world;
             met = geometry_intersect(floatBitsToUint(primitive.v0.x), m * vec4(w.origin, 1.0), m * vec4(w.direction, 0.0),

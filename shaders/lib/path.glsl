@@ -1,5 +1,6 @@
 // The state of a path between two events, and what every stage counts. In registers and in memory it is the same.
 #include "features/bodies.glsl"
+#include "features/elements.glsl"
 #include "features/spectrum.glsl"
 #include "features/defaults.glsl"
 #include "lib/bent_step.glsl"
@@ -32,6 +33,7 @@ struct Path {
 #else
     Collected radiance;   // so far
 #endif
+    MEMBER_IF(HAS_ELEMENTS, uint location;)             // whose frame it is in (features/elements.glsl)
     MEMBER_IF(HAS_POLARIZATION, Carried polarization;)  // features/polarization.glsl
     MEMBER_IF(HAS_LIGHT_LAYERS, uint history;) // features/light_layers.glsl
     MEMBER_IF(HAS_CRYSTALS, uint mode;)        // of the ray, within a crystal (features/crystals.glsl)
@@ -66,6 +68,7 @@ struct ShadowRay {
     uint target;            // what it contributes to: forward the pixel; backward the slot of its path (lib/wavefront.glsl)
     Spectrum contribution;
     Surroundings around;
+    MEMBER_IF(HAS_ELEMENTS, uint location;)
     MEMBER_IF(HAS_POLARIZATION, Carried polarization;)
     MEMBER_IF(HAS_POLARIZED_ENDS, Polarization end;)  // of the light that leaves its end
     MEMBER_IF(HAS_LIGHT_LAYERS, uint history;)

@@ -72,7 +72,7 @@ SurfacePoint locate(Hit hit, vec3 origin, vec3 direction) {
         p = triangle_locate(r, origin, direction, GeometryHit(hit.t, hit.uv));
         s.uv0 = s.uv1 = vec2(0);
         s.tangent = vec4(p.tangent, 1.0);
-        interpolate_attributes(s, r, hit.uv, shading);
+        if (!is_boundary(r.attributes)) interpolate_attributes(s, r, hit.uv, shading);
         if (HAS_INSTANCES == 1)
             if (hit.instance != NO_RECORD) transform = floatBitsToUint(primitives[hit.instance].v0.y);
     }

@@ -8,25 +8,13 @@
 //
 // INDEPENDENT_SAMPLES: hashes in place of the points, for whoever wants errors to fall exactly as 1 / sqrt(samples).
 #include "features/defaults.glsl"
+#include "lib/hash.glsl"
 
 struct Sampler {
     uint index;       // of the sample in its pixel
     uint pixel_hash;  // of pixel and seed
     uint dimension;   // pairs drawn so far
 };
-
-// Three hashes at once (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering", pcg3d).
-uvec3 hash_3d(uvec3 v) {
-    v = v * 1664525u + 1013904223u;
-    v.x += v.y * v.z;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    v ^= v >> 16;
-    v.x += v.y * v.z;
-    v.y += v.z * v.x;
-    v.z += v.x * v.y;
-    return v;
-}
 
 // Nested uniform scramble of a number whose bits stand in reverse order: every bit is flipped by a hash of
 // the bits below it. The form is that of Laine & Karras 2011; the constants are Vegdahl's (2021, "Building a

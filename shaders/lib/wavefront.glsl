@@ -10,7 +10,7 @@
 #include "lib/path.glsl"
 
 layout(scalar, set = 0) buffer PathStates { Path path_states[]; };
-layout(scalar, set = 0) buffer RayOrigins { vec4 ray_origins[]; };        // xyz
+layout(scalar, set = 0) buffer RayOrigins { vec4 ray_origins[]; };        // xyz, w location (bits)
 layout(scalar, set = 0) buffer RayDirections { vec4 ray_directions[]; };  // xyz, w t_max
 // Those towards lights or the receiver; behind them, from `slots` on, those of backward paths towards forward vertices.
 layout(scalar, set = 0) buffer ShadowRays { ShadowRay shadow_rays[]; };
@@ -27,7 +27,7 @@ layout(scalar, set = 0) buffer ClassCounts { uint class_counts[]; };
 void store_path(uint slot, Path path) {
     float end = begin_ray(path);
     path_states[slot] = path;
-    ray_origins[slot] = vec4(path.origin, 0.0);
+    ray_origins[slot] = vec4(path.origin, location_bits(path));
     ray_directions[slot] = vec4(path.direction, end);
 }
 

@@ -1,5 +1,6 @@
 // What the ray of a path comes to: a point of its medium where it scatters, a surface, or nothing; whichever way it goes.
 #include "features/bending.glsl"
+#include "features/boundaries.glsl"
 #include "features/faces.glsl"
 #include "features/receptors.glsl"
 #include "lib/events.glsl"
@@ -18,6 +19,7 @@ struct Arrival {
 // The ray has crossed its medium to `hit`, where it `scatters`, or to what it has met; the path carried this before.
 Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, inout Counters counters) {
     Arrival a;
+    locate_ray(path.location);
     a.is_event = a.lives = true;
     a.scatters = scatters;
     a.caught = is_caught(path, hit, scatters);
@@ -40,11 +42,19 @@ Arrival arrive(inout Path path, Spectrum carried, inout Hit hit, bool scatters, 
         } else if (!is_there(a.sides)) {
             pass_faces(path, a.p, a.sides);
             a.is_event = false;
+        } else if (!a.caught && meets_boundary(hit)) {
+            pass_boundary(path, carried, hit, a.p);
+            a.lives = count_boundary(path, counters);
+            a.is_event = false;
         }
     } else if (is_bent(path)) {
         end_step(path);
         a.is_event = false;
         a.lives = count_step(path, counters);
+    } else if (within_element(path)) {
+        miss_boundary(path);
+        a.lives = count_boundary(path, counters);
+        a.is_event = a.escapes = false;
     }
     return a;
 }

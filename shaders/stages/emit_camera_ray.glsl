@@ -24,6 +24,7 @@ Path emit_camera_ray(View view, uint place, uint sample_index, uint seed) {
     CameraRay ray = receiver_emit(view.receiver, film, u, film_aspect(view));
     path.origin = ray.origin;
     path.direction = ray.direction;
+    start_location(path, view.element);
     path.throughput = Spectrum(ray.weight);
     path.radiance = nothing_collected();
     path.reference = ray.origin;

@@ -22,6 +22,7 @@ Path emit_light_ray(uint index) {
     float density = ray.pdf * probability;
     path.origin = offset_origin(ray.origin, ray.error, ray.normal, ray.direction);
     path.direction = ray.direction;
+    start_location(path, location_of_light(light));
     path.throughput = density > 0.0 ? ray.radiance * (forward_pass.inverse_power / density) : Spectrum(0);
     path.reference = ray.origin;
     path.pdf = 0.0;

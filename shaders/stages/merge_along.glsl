@@ -16,7 +16,7 @@ const float SURE_DEPTH = 1.0;
 
 // How far along the ray vertices merge, m.
 float merged_length(Path path, float to_surface) {
-    if ((path.flags & PATH_AFTER_NARROW) == 0u || !medium_scatters(path.around.medium)) return 0.0;
+    if (within_element(path) || (path.flags & PATH_AFTER_NARROW) == 0u || !medium_scatters(path.around.medium)) return 0.0;
     if (!merges_along(path.around.medium)) return 0.0;
     float towards = dot(path.origin, path.direction);
     float left = square(towards) + square(BEAM_REACH) - dot(path.origin, path.origin);

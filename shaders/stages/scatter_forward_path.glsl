@@ -34,14 +34,14 @@ bool scatter_forward(inout Path path, Arrival a, Hit hit, uint path_index, out u
     bool is_delta = is_delta_point(s);
     VertexMis mis = vertex_mis(path, p, s);
     if (a.caught) mis.merging = 0.0;
-    if (!is_delta && !a.caught) store_vertex(path, path_index, p, s, hit, mis);
+    if (!is_delta && !a.caught && !within_element(path)) store_vertex(path, path_index, p, s, hit, mis);
     // connect_receiver, scatter_surfaces
     ReceiverSample r = no_receiver_sample();
     uint v = NO_RECORD;
     if (!is_delta) v = a.caught ? catching_view(path, hit) : choose_view(path.random);
     View view = views[v == NO_RECORD ? 0u : v];
     if (a.caught) record_crossing(path, p.position, view);
-    if (v != NO_RECORD) r = receiver_connect(view.receiver, p.position, sample_2d(path.random), film_aspect(view));
+    if (v != NO_RECORD && same_element(path, view)) r = receiver_connect(view.receiver, p.position, sample_2d(path.random), film_aspect(view));
     if (HAS_SURFACE_METERS == 1)
         if (a.caught && hit.primitive != NO_RECORD) r = caught_at_surface(path, view, hit);
     vec3 wi = r.direction * s.frame;

@@ -38,11 +38,11 @@ Collected collect_emission(Path path, Arrival a) {
 }
 
 // A light for the point: what it would bring if the surface scattered all of it. pdf 0 = none.
-LightSample sample_light(inout Sampler random, vec3 position, out uint light) {
-    vec2 u = sample_2d(random);
+LightSample sample_light(inout Path path, vec3 position, out uint light) {
+    vec2 u = sample_2d(path.random);
     light = 0u;
-    float probability = 1.0, unused;
-    if (LIGHT_COUNT > 1) light = select_light(position, sample_1d(random), probability, unused);
+    float probability = 1.0;
+    if (SELECTS_LIGHTS) light = select_light_at(element_of(path), position, sample_1d(path.random), probability);
     if (!(probability > 0.0)) return no_light_sample();
     LightSample l = light_sample_towards(lights[light], position, u);
     l.pdf *= probability;
@@ -84,11 +84,11 @@ bool scatter_path(inout Path path, Hit hit, inout Counters counters, out ShadowR
     LightSample l = no_light_sample();
     uint light = 0u;
     if (HAS_LIGHTS)
-        if (!is_delta && !forward_brings(path)) l = sample_light(path.random, p.position, light);
+        if (!is_delta && !forward_brings(path)) l = sample_light(path, p.position, light);
     vec3 wi = l.direction * s.frame;
     vec3 u = sample_3d(path.random);
     Connection connection = no_connection(wi);
-    if (!is_delta) connection = choose_vertex(path, p, s);
+    if (!is_delta && !within_element(path)) connection = choose_vertex(path, p, s);
     SurfaceEvent event = scattering_event(s, wi, connection.wi, SHADOW_RAYS, u);
     // No light where the shading normal and the surface disagree on which side it is.
     if (HAS_LIGHTS)

@@ -23,6 +23,7 @@ struct Oracle {
     // Signed distance of a point near the surface from it (rims aside).
     std::function<double(glm::dvec3)> distance;
     Box bounds;
+    bool is_samplable = true, is_convex = true;
 };
 
 inline const glm::dvec3 corner[3] = {{-0.7, -0.4, 0.2}, {0.9, -0.3, -0.5}, {0.1, 0.8, 0.6}};
@@ -31,6 +32,30 @@ inline std::vector<double> quadratic(double a, double b, double c) {  // a t² +
     const double d = b * b - a * c;
     if (!(d >= 0) || a == 0) return {};
     return {(-b - std::sqrt(d)) / a, (-b + std::sqrt(d)) / a};
+}
+
+// Of microstructure, with these parameters: the middle of the dome over a place, if there is one.
+inline const nlohmann::json domes = {{"size", {1.5, 0.75}},      {"pitch", {0.3125, 0.21875}}, {"radius", 0.09375}, {"depth", 0.0625},
+                                     {"placement", "staggered"}, {"density", 0.75},      {"seed", 5}};
+constexpr double cell_width = 0.3125, cell_height = 0.21875, dome_radius = 0.09375, dome_depth = 0.0625;
+constexpr double dome_curvature = (dome_radius * dome_radius + dome_depth * dome_depth) / (2 * dome_depth);
+inline std::optional<glm::dvec3> dome_over(const glm::dvec3& p) {
+    const int columns = 4, rows = 3;
+    const int row = int(std::floor(p.y / cell_height + 0.5 * rows));
+    const double start = ((row & 1 ? 0.25 : -0.25) - 0.5 * columns) * cell_width;
+    const int column = int(std::floor((p.x - start) / cell_width));
+    if (row < 0 || row >= rows || column < 0 || column >= columns) return {};
+    // hash_3d of shaders/lib/hash.glsl.
+    glm::uvec3 v = glm::uvec3(column, row, 5) * 1664525u + 1013904223u;
+    for (int round = 0; round < 2; ++round) {
+        v.x += v.y * v.z, v.y += v.z * v.x, v.z += v.x * v.y;
+        if (round == 0) v ^= v >> 16u;
+    }
+    if (float(v.z >> 8) / 16777216.0f >= 0.75f) return {};
+    return glm::dvec3(start + (column + 0.5) * cell_width, (row + 0.5 - 0.5 * rows) * cell_height, dome_depth - dome_curvature);
+}
+inline bool dome_covers(const std::optional<glm::dvec3>& dome, const glm::dvec3& p) {
+    return dome && std::hypot(p.x - dome->x, p.y - dome->y) < dome_radius;
 }
 
 inline const std::map<std::string, Oracle>& oracles() {
@@ -87,6 +112,33 @@ inline const std::map<std::string, Oracle>& oracles() {
           },
           [](V p) { return std::hypot(p.x, p.y) - 0.5; },
           {{-0.5f, -0.5f, -0.7f}, {0.5f, 0.5f, 0.7f}}}},
+        {"microstructure",
+         {domes,
+          [](V o, V d) -> Ts {
+              Ts result;
+              const V p = o - o.z / d.z * d;
+              if (std::abs(p.x) <= 0.75 && std::abs(p.y) <= 0.375 && !dome_covers(dome_over(p), p))
+                  result.push_back(-o.z / d.z);
+              for (int row = 0; row < 3; ++row)
+                  for (int column = 0; column < 4; ++column) {
+                      const double shift = row & 1 ? 0.25 : -0.25;
+                      const V middle((column - 1.5 + shift) * cell_width, (row - 1) * cell_height, 0);
+                      const auto dome = dome_over(middle);
+                      if (!dome) continue;
+                      const V from = o - *dome;
+                      for (const double t : quadratic(glm::dot(d, d), glm::dot(from, d),
+                                                      glm::dot(from, from) - dome_curvature * dome_curvature))
+                          if (o.z + t * d.z >= 0) result.push_back(t);
+                  }
+              return result;
+          },
+          [](V p) {
+              const auto dome = dome_over(p);
+              return dome_covers(dome, p) ? glm::length(p - *dome) - dome_curvature : p.z;
+          },
+          {{-0.75f, -0.375f, 0}, {0.75f, 0.375f, 0.0625f}},
+          false,
+          false}},
     };
     return table;
 }

@@ -64,22 +64,3 @@ TEST_CASE("a parameter's type, offset, default, range and unit come from its cla
     CHECK(registry.find(Interface::surface, "velvet") == nullptr);
 }
 
-TEST_CASE("an element class from outside compiles with its interface's contract and dispatch") {
-    const TemporaryFolder folder;
-    std::ofstream(folder / "mirror_box.glsl")
-        << "// Sends every ray back.\n"
-           "struct MirrorBox {\n    float size;  //: 1 in (0, inf) m. Edge of the box.\n};\n"
-           "bool mirror_box_enter(MirrorBox r, inout ElementRay ray) { return true; }\n"
-           "bool mirror_box_leave(MirrorBox r, inout ElementRay ray) { ray.direction = -ray.direction; "
-           "return true; }\n";
-    ClassRegistry registry(sources());
-    registry.add_class_file(Interface::element, folder / "mirror_box.glsl");
-    const ClassInfo* info = registry.find(Interface::element, "mirror_box");
-    REQUIRE(info);
-    CHECK(parameter(*info, "size").unit == "m");
-    std::ofstream(folder / "half_box.glsl")
-        << "struct HalfBox { float size; };\n"
-           "bool half_box_enter(HalfBox r, inout ElementRay ray) { return true; }\n";
-    registry.add_class_file(Interface::element, folder / "half_box.glsl");
-    CHECK_THROWS_AS(registry.find(Interface::element, "half_box"), Error);  // half_box_leave is missing
-}

@@ -317,7 +317,8 @@ TEST_CASE("objects on nodes are placed, with the material of a geometry") {
              {{"ETD_optics", {{"geometry", {{"class", "sphere"}, {"radius", 2}, {"material", 0}}}}}}}});
     b.node({{"extensions", {{"ETD_optics", {{"receiver", {{"class", "thin_lens"}, {"focus", 1}}}}}}}});
     b.node({{"extensions", {{"ETD_optics", {{"light", {{"class", "collimated"}}}}}}}});
-    b.node({{"extensions", {{"ETD_optics", {{"element", {{"class", "grating"}}}}}}}});
+    b.node({{"extensions", {{"ETD_optics", {{"element", {{"class", "subscene"}, {"scene", 1}}}}}}}});
+    b.document["scenes"].push_back({{"nodes", json::array()}});
     SceneDescription s = b.import();
     REQUIRE(s.shapes.size() == 1);
     CHECK(s.shapes[0].name == "ball");
@@ -326,7 +327,7 @@ TEST_CASE("objects on nodes are placed, with the material of a geometry") {
     CHECK(s.shapes[0].world_from_local[3] == glm::dvec4(1, 2, 3, 1));
     CHECK(s.receivers.at(0).object.parameters == json{{"focus", 1}});
     CHECK(s.lights.at(0).object.class_name == "collimated");
-    CHECK(s.elements.at(0).object.where == "/nodes/4/extensions/ETD_optics/element");
+    CHECK(s.elements.at(0).where == "/nodes/4/extensions/ETD_optics/element");
 }
 
 TEST_CASE("spectra, environment and media of the root are read") {

@@ -1,5 +1,6 @@
 #include "tests/support/render_probe.h"
 
+#include <utility>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -161,6 +162,14 @@ void SceneBuilder::transform(const glm::dvec3& translation, double scale) {
 
 void SceneBuilder::scale_last(const glm::dvec3& scale) {
     document["nodes"].back()["scale"] = {scale.x, scale.y, scale.z};
+}
+
+int SceneBuilder::scene(const std::function<void()>& fill) {
+    json outer = std::exchange(document["nodes"][0]["children"], json::array());
+    fill();
+    json inner = std::exchange(document["nodes"][0]["children"], std::move(outer));
+    document["scenes"].push_back({{"nodes", std::move(inner)}});
+    return int(document["scenes"].size()) - 1;
 }
 
 SceneDescription SceneBuilder::import(const std::filesystem::path& file) const {

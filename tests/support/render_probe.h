@@ -1,6 +1,7 @@
 // Whole scenes, written in code or read from the reference folder, rendered as the library renders them and
 // compared with what they must show.
 #pragma once
+#include <functional>
 #include <glm/glm.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -45,6 +46,8 @@ class SceneBuilder {
     void mesh_copy(const Place& place);  // of the mesh that was added last
     void orthographic(double ymag, const Place& place, const std::string& name = "camera");
     void perspective(double yfov, const Place& place, const std::string& name = "camera");
+    // What `fill` adds stands in another scene of the file, whose index is returned: for optical elements.
+    int scene(const std::function<void()>& fill);
     void environment(nlohmann::json radiance);
     void medium(const std::string& name, nlohmann::json parameters);
     void transform(const glm::dvec3& translation, double scale);

@@ -42,6 +42,7 @@ class Gltf:
     def __init__(self, name, expected):
         self.name, self.expected = name, expected
         self.nodes, self.meshes, self.materials, self.cameras = [], [], [], []
+        self.inner = []  # further scenes, for elements: lists of nodes
         self.lights, self.accessors, self.views, self.media = [], [], [], []
         self.environment = None
         self.data = bytearray()
@@ -179,6 +180,19 @@ class Gltf:
         """A receiver of a class of ETD_optics."""
         self._placed("receiver", name, matrix, class_name, parameters)
 
+    def scene(self, name, fill):
+        """What `fill` adds stands in another scene of the file; returns its index, for elements."""
+        first = len(self.nodes)
+        inner = len(self.inner)
+        fill()
+        held = {i for scene in self.inner[inner:] for i in scene["nodes"]}
+        self.inner.append({"name": name, "nodes": [i for i in range(first, len(self.nodes)) if i not in held]})
+        return len(self.inner)
+
+    def element(self, name, matrix, scene):
+        """A scene of the file as a black box."""
+        self._placed("element", name, matrix, "subscene", {"scene": scene})
+
     def _placed(self, interface, name, matrix, class_name, parameters):
         optics = {interface: {"class": class_name, **parameters}}
         self.nodes.append({"name": name, "matrix": matrix, "extensions": {"ETD_optics": optics}})
@@ -246,8 +260,10 @@ class Gltf:
             (path.parent / name).write_bytes(content)
 
     def _scenes(self):
-        scene = {"name": self.name, "extras": {"expected": self.expected}, "nodes": list(range(len(self.nodes)))}
-        return {"scene": 0, "scenes": [scene]}
+        held = {i for scene in self.inner for i in scene["nodes"]}
+        nodes = [i for i in range(len(self.nodes)) if i not in held]
+        scene = {"name": self.name, "extras": {"expected": self.expected}, "nodes": nodes}
+        return {"scene": 0, "scenes": [scene, *self.inner]}
 
     def _material(self, material):
         self.materials.append(material)

@@ -12,6 +12,7 @@ from pathlib import Path
 from boxes import caustic_box, cornell_box
 from crystals import calcite
 from dispersion import prism, rainbow
+from elements import housing, light_guide, light_guide_fine
 from example import example
 from furnaces import furnace_closed, furnace_rough, furnace_smooth, spheres
 from grin import grin
@@ -50,6 +51,9 @@ SCENES = [
     street,
     led_lens,
     integrating_sphere,
+    light_guide,
+    light_guide_fine,
+    housing,
     furnace_smooth,
     furnace_rough,
     furnace_closed,

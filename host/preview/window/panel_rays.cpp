@@ -12,8 +12,8 @@ namespace etendue {
 namespace {
 
 constexpr PathEvent events[] = {PathEvent::reflected, PathEvent::refracted, PathEvent::straight,
-                                PathEvent::scattered, PathEvent::bent,      PathEvent::absorbed,
-                                PathEvent::escaped};
+                                PathEvent::scattered, PathEvent::entered,   PathEvent::left,
+                                PathEvent::bent,      PathEvent::absorbed,  PathEvent::escaped};
 constexpr double faintest = 0.05;         // of a line
 constexpr double strength_behind = 0.25;  // surfaces, of that in front
 constexpr double part_pixels = 4;         // that are hidden or not

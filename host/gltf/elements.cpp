@@ -1,0 +1,187 @@
+// Optical elements: nodes that hold another scene of the file, as a black box.
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "host/geometry/turn.h"
+#include "host/gltf/import.h"
+
+namespace etendue {
+namespace {
+
+constexpr size_t max_elements = size_t(1) << 20;
+
+// Edges of a closed surface that faces one way are each gone along once in either direction.
+void check_closed(const JsonAt& at, const GltfImport& import, const std::vector<MeshInstance>& boundary) {
+    using Corner = std::tuple<float, float, float>;
+    std::map<std::pair<Corner, Corner>, int> edges;
+    double volume = 0;
+    for (const MeshInstance& instance : boundary) {
+        const MeshDescription& mesh = import.scene.meshes[instance.mesh];
+        for (const glm::uvec3& t : mesh.triangles) {
+            glm::dvec3 p[3];
+            Corner corners[3];
+            for (int i = 0; i < 3; ++i) {
+                const glm::vec3 v = mesh.positions[t[i]] + 0.0f;  // -0 is 0
+                p[i] = v, corners[i] = {v.x, v.y, v.z};
+            }
+            volume += glm::dot(p[0], glm::cross(p[1], p[2]));
+            for (int i = 0; i < 3; ++i) {
+                const Corner &a = corners[i], &b = corners[(i + 1) % 3];
+                a < b ? ++edges[{a, b}] : --edges[{b, a}];
+            }
+        }
+    }
+    for (const auto& [edge, balance] : edges)
+        if (balance != 0)
+            fail_at(at, "is not closed: there is a hole, or a triangle turned round, at ({:g}, {:g}, {:g}); "
+                        "allowed: a closed mesh", std::get<0>(edge.first), std::get<1>(edge.first), std::get<2>(edge.first));
+    if (!(volume > 0)) fail_at(at, "faces inward; allowed: a closed mesh that faces outward");
+}
+
+std::vector<MeshInstance> read_boundary(GltfImport& import, const JsonAt& element) {
+    const std::optional<JsonAt> at = find(element, "boundary");
+    if (!at) return {};
+    if ((*at)->is_string()) {
+        if (text_value(*at) != "box")
+            fail_at(*at, "is '{}'; allowed: \"box\", or the index of a mesh", text_value(*at));
+        return {};
+    }
+    const uint32_t mesh = index_value(*at, array_size(import.root, "meshes"), "/meshes");
+    const MeshRange range = read_mesh(import, mesh, {});
+    std::vector<MeshInstance> boundary;
+    for (uint32_t i = range.first; i < range.first + range.count; ++i)
+        boundary.push_back({i, import.content_root, element.pointer, import.scene.meshes[i].name, 0});
+    if (boundary.empty()) fail_at(*at, "has no triangles; allowed: a closed mesh");
+    check_closed(*at, import, boundary);
+    return boundary;
+}
+
+void check_holds_not_itself(const GltfImport& import, uint32_t element, uint32_t root_scene) {
+    const std::optional<uint32_t> scene = import.elements[element].scene;
+    if (!scene) return;
+    for (uint32_t i = import.scene.elements[element].parent;; i = import.scene.elements[i - 1].parent) {
+        if (*scene == (i == 0 ? root_scene : import.elements[i - 1].scene))
+            fail_at(member(import.elements[element].at, "scene"), "scene {} holds itself; allowed: another scene", *scene);
+        if (i == 0) return;
+    }
+}
+
+// The only object of an element of class microstructure, within a box that it fills from side to side.
+void place_microstructure(GltfImport& import, const JsonAt& at) {
+    if (find(at, "cell")) fail_at(member(at, "cell"), "cells hold no scenes in this version; allowed: a shape");
+    PlacedObject sheet{"microstructure", {"microstructure", nlohmann::json::object(), at.pointer}, import.content_root};
+    for (const auto& [key, value] : at->items())
+        if (key != "class" && key != "material" && key != "density" && key != "scale" && key != "thickness")
+            sheet.object.parameters[key] = value;
+    if (const auto density = find(at, "density"); density && (*density)->is_object())
+        sheet.object.parameters["density_texture"] = read_texture_info(import, *density);
+    else if (density)
+        sheet.object.parameters["density"] = **density;
+    const double scale = number(at, "scale", 1, 1e-9, 1e9);
+    const double radius = scale * number_value(member(at, "radius"), 0, max_coordinate),
+                 depth = scale * number_value(member(at, "depth"), 0, max_coordinate);
+    sheet.object.parameters["radius"] = radius, sheet.object.parameters["depth"] = depth;
+    const auto material = index(at, "material", array_size(import.root, "materials"), "/materials");
+    sheet.material = material ? *material : default_material(import);
+    import.scene.shapes.push_back(sheet);
+
+    const std::vector<double> size = number_array(member(at, "size"), 2, 0, max_coordinate);
+    const bool is_dent = text(at, "operation", "add") == "remove";
+    const double thickness = number(at, "thickness", 1.01 * depth, depth, max_coordinate), beyond = 0.01 * depth;
+    const glm::vec3 half(0.5 * size[0], 0.5 * size[1], 0);
+    const float lo = float(is_dent ? -thickness : -beyond), hi = float(is_dent ? beyond : thickness);
+    MeshDescription box;
+    box.name = "boundary", box.where = at.pointer;
+    for (int i = 0; i < 8; ++i)
+        box.positions.push_back({i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? hi : lo});
+    box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    import.scene.contents.back().boundary = {{uint32_t(import.scene.meshes.size()), import.content_root, at.pointer}};
+    import.mesh_bounds.push_back({glm::dvec3(-half.x, -half.y, lo), glm::dvec3(half.x, half.y, hi)});
+    import.scene.meshes.push_back(std::move(box));
+}
+
+// What an element holds, as a new content.
+void place_content(GltfImport& import, uint32_t element) {
+    SceneDescription& scene = import.scene;
+    const size_t instances = scene.instances.size(), shapes = scene.shapes.size(), lights = scene.lights.size(),
+                 receivers = scene.receivers.size();
+    const JsonAt at = import.elements[element].at;
+    import.content_root = glm::dmat4(import.elements[element].scale);
+    import.holder = element + 1;
+    scene.contents.push_back({{}, at.pointer});
+    if (const auto held = import.elements[element].scene) {
+        scene.contents.back().boundary = read_boundary(import, at);
+        place_nodes(import, *held);
+    } else {
+        place_microstructure(import, at);
+    }
+    const uint32_t content = uint32_t(scene.contents.size());
+    const auto name = [&](auto& objects, size_t first) {
+        for (size_t i = first; i < objects.size(); ++i) objects[i].content = content;
+    };
+    name(scene.instances, instances), name(scene.shapes, shapes);
+    name(scene.lights, lights), name(scene.receivers, receivers);
+}
+
+bool shines_or_receives(const SceneDescription& scene, uint32_t content) {
+    const auto is_held = [&](const auto& object) { return object.content == content; };
+    const auto emits = [&](uint32_t material) { return scene.materials[material].emission.has_value(); };
+    return std::ranges::any_of(scene.lights, is_held) || std::ranges::any_of(scene.receivers, is_held) ||
+           std::ranges::any_of(scene.shapes,
+                               [&](const PlacedObject& s) { return is_held(s) && emits(s.material); }) ||
+           std::ranges::any_of(scene.instances, [&](const MeshInstance& i) {
+               return is_held(i) && emits(scene.meshes[i.mesh].material);
+           });
+}
+
+}  // namespace
+
+void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
+                  const glm::dmat4& parent_from_local) {
+    const JsonAt class_at = member(at, "class");
+    const bool holds_scene = text_value(class_at) == "subscene";
+    if (holds_scene) only_members(at, {"class", "scene", "boundary"});
+    else if (text_value(class_at) != "microstructure")
+        fail_at(class_at, "there is no element class '{}'; allowed: subscene, microstructure", text_value(class_at));
+    if (import.scene.elements.size() == max_elements)
+        fail_at(at, "the scene has more than {} elements", max_elements);
+    const Parts parts = parted(glm::dmat3(parent_from_local));
+    PlacedElement element{name, at.pointer, 0, import.holder, glm::dmat4(parts.turn)};
+    element.parent_from_local[3] = parent_from_local[3];
+    import.scene.elements.push_back(element);
+    std::optional<uint32_t> scene;
+    if (holds_scene) scene = index_value(member(at, "scene"), array_size(import.root, "scenes"), "/scenes");
+    import.elements.push_back({scene, parts.rest, at});
+}
+
+void load_elements(GltfImport& import, uint32_t root_scene) {
+    SceneDescription& scene = import.scene;
+    if (scene.elements.empty()) return;
+    std::map<std::pair<std::string, std::vector<double>>, uint32_t> known;  // contents that may be shared
+    for (uint32_t i = 0; i < scene.elements.size(); ++i) {
+        check_holds_not_itself(import, i, root_scene);
+        const ElementImport& element = import.elements[i];
+        std::vector<double> scale(&element.scale[0][0], &element.scale[0][0] + 9);
+        nlohmann::json what = *element.at;
+        auto found = known.find({what.dump(), scale});
+        if (found == known.end()) {
+            const size_t elements = scene.elements.size();
+            place_content(import, i);
+            const uint32_t content = uint32_t(scene.contents.size()) - 1;
+            scene.elements[i].content = content;
+            if (elements == scene.elements.size() && !shines_or_receives(scene, content + 1))
+                known[{what.dump(), scale}] = content;
+        } else {
+            scene.elements[i].content = found->second;
+        }
+    }
+    MaterialDescription boundary;
+    boundary.name = "boundary";
+    boundary.surface = {"absorber", nlohmann::json::object(), "/materials"};
+    scene.boundary_material = uint32_t(scene.materials.size());
+    scene.materials.push_back(boundary);
+}
+
+}  // namespace etendue

@@ -1,0 +1,74 @@
+// Optical elements of a scene file: what is read, and what is refused.
+#include <doctest/doctest.h>
+
+#include "tests/host/gltf_scene_builder.h"
+
+using namespace etendue;
+using nlohmann::json;
+
+namespace {
+
+// Scene 0 holds an element of scene 1, which holds a ball.
+GltfBuilder with_element(json element) {
+    GltfBuilder b;
+    b.node({{"name", "lens"}, {"translation", {1, 2, 3}}, {"scale", {2, 2, 2}},
+            {"extensions", {{"ETD_optics", {{"element", std::move(element)}}}}}});
+    b.node({{"name", "ball"},
+            {"extensions", {{"ETD_optics", {{"geometry", {{"class", "sphere"}, {"radius", 0.5}}}}}}}});
+    b.document["scenes"] = {{{"nodes", {0}}}, {{"nodes", {1}}}};
+    return b;
+}
+json subscene(int scene) { return {{"class", "subscene"}, {"scene", scene}}; }
+
+}  // namespace
+
+TEST_CASE("an element has a frame without scale, and what it holds is scaled") {
+    const SceneDescription s = with_element(subscene(1)).import();
+    REQUIRE(s.elements.size() == 1);
+    REQUIRE(s.contents.size() == 1);
+    CHECK(s.elements[0].name == "lens");
+    CHECK(s.elements[0].parent == 0);
+    CHECK(s.elements[0].parent_from_local[3] == glm::dvec4(1, 2, 3, 1));
+    CHECK(s.elements[0].parent_from_local[0] == glm::dvec4(1, 0, 0, 0));
+    REQUIRE(s.shapes.size() == 1);
+    CHECK(s.shapes[0].content == 1);
+    CHECK(s.shapes[0].world_from_local[0] == glm::dvec4(2, 0, 0, 0));
+    CHECK(s.materials[s.boundary_material].surface.class_name == "absorber");
+}
+
+TEST_CASE("elements of the same scene and scale share what they hold, unless it shines") {
+    GltfBuilder b = with_element(subscene(1));
+    for (int i = 2; i < 5; ++i) {
+        b.node({{"scale", {i == 4 ? 1 : 2, 2, 2}}, {"extensions", {{"ETD_optics", {{"element", subscene(1)}}}}}});
+    }
+    b.document["scenes"] = {{{"nodes", {0, 2, 3, 4}}}, {{"nodes", {1}}}};
+    const SceneDescription s = b.import();
+    CHECK(s.elements.size() == 4);
+    CHECK(s.contents.size() == 2);
+    b.document["nodes"][1]["extensions"]["ETD_optics"]["light"] = {{"class", "collimated"}};
+    CHECK(b.import().contents.size() == 4);
+}
+
+TEST_CASE("faults of elements are named") {
+    const std::string at = "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element";
+    const auto error = [](json element) { return import_error(with_element(std::move(element)).glb()); };
+    CHECK(error({{"class", "lens"}, {"scene", 1}}) == at + "/class: there is no element class 'lens'; allowed: subscene, microstructure");
+    CHECK(error(subscene(7)) == at + "/scene: is 7; /scenes has elements 0 to 1");
+    CHECK(error(subscene(0)) == at + "/scene: scene 0 holds itself; allowed: another scene");
+    json sphere = subscene(1);
+    sphere["boundary"] = "sphere";
+    CHECK(error(sphere) == at + "/boundary: is 'sphere'; allowed: \"box\", or the index of a mesh");
+    json open = subscene(1);
+    open["boundary"] = 0;
+    GltfBuilder b = with_element(open);
+    b.triangle();
+    CHECK(import_error(b.glb()).find("is not closed: there is a hole") != std::string::npos);
+}
+
+TEST_CASE("a scene that holds one that holds it is refused") {
+    GltfBuilder b = with_element(subscene(1));
+    b.document["nodes"][1]["extensions"]["ETD_optics"] = {{"element", subscene(1)}};
+    CHECK(import_error(b.glb()).find("scene 1 holds itself") != std::string::npos);
+    b.document["nodes"][1]["extensions"]["ETD_optics"] = {{"element", subscene(0)}};
+    CHECK(import_error(b.glb()).find("scene 0 holds itself") != std::string::npos);
+}

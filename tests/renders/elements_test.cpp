@@ -1,0 +1,153 @@
+// Optical elements against the same objects without, in all algorithms, and what must not change by them.
+#include <doctest/doctest.h>
+
+#include "tests/renders/algorithm_comparison.h"
+
+using namespace etendue;
+using nlohmann::json;
+
+namespace {
+
+const json turned = {0.2, 0.3, -0.1, 0.9273618495495703};  // a quaternion of length 1
+
+// A room with a lamp, a red block and a camera, without what the tests put into it.
+SceneBuilder room(bool with_lamp = true) {
+    SceneBuilder s;
+    add_box(s, {2, 2, 2}, s.lambertian({0.7, 0.7, 0.7}), true, at(0, 0, 0));
+    add_box(s, {0.5f, 0.7f, 0.5f}, s.lambertian({0.7, 0.2, 0.1}), false, at(-0.6, -0.65, -0.4));
+    if (with_lamp) s.rectangle(0.5, 0.5, s.black_emitter({10, 9, 8}), facing_down(0, 0.96, 0));
+    s.perspective(0.9, at(0, 0, 0.97));
+    s.medium("glass", {{"ior", 1.5}, {"absorption", {0.2, 0.4, 1}}});
+    return s;
+}
+int glass(SceneBuilder& s) { return s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}); }
+
+json subscene(int scene) { return {{"class", "subscene"}, {"scene", scene}}; }
+
+Estimates backward(const SceneDescription& description, uint32_t passes = 256, uint32_t first_seed = 501) {
+    RenderPlan plan;
+    plan.width = 32, plan.height = 24, plan.seeds = 16, plan.passes = passes, plan.first_seed = first_seed;
+    return render_estimates(description, plan);
+}
+
+// An image without noise.
+void check_uniform(const Estimates& e, double value) {
+    double least = INFINITY, most = 0;
+    for (const double v : e.mean) least = std::min(least, v), most = std::max(most, v);
+    CHECK(least == doctest::Approx(value).epsilon(1e-5));
+    CHECK(most == doctest::Approx(value).epsilon(1e-5));
+}
+
+}  // namespace
+
+TEST_CASE("a ball of glass in an element, three deep, is as it is without") {
+    SceneBuilder plain = room();
+    plain.sphere(0.3, glass(plain), at(0.35, -0.3, -0.1));
+
+    SceneBuilder s = room();
+    const int material = glass(s);
+    const int ball = s.scene([&] { s.sphere(0.3, material, at(0.01, 0.02, 0)); });
+    const int holder = s.scene([&] { s.placed("element", subscene(ball), at(-0.01, -0.02, 0)); });
+    const int shell = s.scene([&] { s.placed("element", subscene(holder), {{0, 0, 0}, turned}); });
+    s.placed("element", subscene(shell), at(0.35, -0.3, -0.1));
+    Scene scene = compile_test_scene(s.import());
+    CHECK(scene.features.elements);
+
+    RenderPlan plan;
+    plan.width = 32, plan.height = 24, plan.seeds = 16, plan.passes = 128;
+    plan.merge_radius = 0.1f;
+    const Estimates expected = backward(plain.import(), 512);
+    check_agreement("backward", render_estimates(scene, plan), expected, 0.002, 0.01);
+    plan.algorithm = Algorithm::bidirectional, plan.passes = 64;
+    const Estimates both = render_estimates(scene, plan);
+    check_agreement("bidirectional", both, expected, 0.002, 0.01);
+    const RenderCounters& c = both.counters;
+    CHECK(c.emitted == doctest::Approx(c.absorbed + c.forward_escaped + c.roulette + c.forward_depth_limit_lost).epsilon(1e-4));
+    plan.algorithm = Algorithm::forward;
+    check_agreement("forward", render_estimates(scene, plan), expected, 0.002, 0.01);
+}
+
+TEST_CASE("lamps and a camera within elements") {
+    SceneBuilder s = room(false);
+    s.document["nodes"][0]["children"].erase(2);  // the camera
+    const int lamp = s.black_emitter({10, 9, 8});
+    const int white = s.lambertian({0.8, 0.8, 0.8});
+    const int lamps = s.scene([&] {
+        s.rectangle(0.4, 0.4, lamp, facing_down(0, 0.1, 0));
+        add_box(s, {0.1f, 0.1f, 0.1f}, white, false, at(0.1, -0.05, 0.05));
+        s.light({{"type", "point"}, {"intensity", 0.2}}, at(-0.15, 0, -0.1));
+    });
+    const int mirror = s.surface({{"class", "conductor"}, {"eta", {0.2, 0.9, 1.2}}, {"k", {3.9, 2.4, 2.2}}});
+    const int camera = s.scene([&] {
+        s.perspective(0.9, at(0, 0, 0.05));
+        s.rectangle(0.1, 0.05, mirror, {{0, 0.03, -0.1}, {0.6, 0, 0, 0.8}});
+        add_box(s, {0.3f, 0.01f, 0.3f}, white, false, at(0, -0.1, 0));
+    });
+    s.placed("element", subscene(lamps), at(0.1, 0.7, -0.2));
+    s.placed("element", subscene(camera), {{-0.05, 0, 0.7}, {0, 0.1, 0, 0.99498743710662}});
+    Scene scene = compile_test_scene(s.import());
+    Comparison c;
+    c.backward = 512, c.forward = 512, c.bidirectional = 128;
+    c.largest_error = 0.01;
+    check_against_backward(scene, c);
+}
+
+TEST_CASE("elements without a surface are invisible, whatever their boundaries touch") {
+    SceneBuilder s;
+    s.environment({1, 1, 1});
+    const int none = s.lambertian({0, 0, 0});
+    s.scene([&] { add_box(s, {0.2f, 0.2f, 0.2f}, none, false, at(0, 0, 0)); });  // in no element: mesh 0
+    const int empty = s.scene([] {});
+    json element = subscene(empty);
+    element["boundary"] = 0;
+    for (int i = -2; i <= 2; ++i) s.placed("element", element, at(0.2 * i, 0, 0));  // they share faces
+    s.placed("element", element, {{0, 0.5, 0}, turned});
+    s.perspective(0.9, at(0, 0.1, 1));
+    const SceneDescription description = s.import();
+    CHECK(description.contents.size() == 1);
+    check_uniform(backward(description, 4), 1);
+}
+
+// The cube fills its element to the brim, and stands on a plate that touches it.
+TEST_CASE("glass that touches the boundary of its element from both sides") {
+    const auto build = [](bool element) {
+        SceneBuilder s = room();
+        const int material = glass(s);
+        add_box(s, {0.4f, 0.1f, 0.4f}, material, false, at(0.3, -0.6, 0));
+        const auto cube = [&](const Place& place) { add_box(s, {0.4f, 0.4f, 0.4f}, material, false, place); };
+        if (!element) {
+            cube(at(0.3, -0.35, 0));
+        } else {
+            json object = subscene(s.scene([&] { cube(at(0, 0, 0)); }));
+            object["boundary"] = s.document["meshes"].size() - 1;
+            s.placed("element", object, at(0.3, -0.35, 0));
+        }
+        return s.import();
+    };
+    check_agreement("touching", backward(build(true), 256, 1), backward(build(false), 256), 0.002, 0.01);
+}
+
+TEST_CASE("polarized light and fog pass into an element and out of it") {
+    const auto build = [](bool element) {
+        SceneBuilder s;
+        s.rectangle(3, 3, s.material({{"surface", {{"class", "linear_polarizer"}, {"axis", 0.4}}}}), {{0, 0, -1}, turned});
+        s.rectangle(8, 8, s.black_emitter({3, 2, 1}), at(0, 0, -3));
+        s.medium("fog", {{"scattering", 0.8}, {"absorption", 0.3}});
+        const int cloud = s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}});
+        const int retarder = s.material({{"surface", {{"class", "retarder"}, {"axis", 0.9}, {"retardance", 1.2}}}});
+        const auto fill = [&](const json& turn) {
+            s.rectangle(0.5, 0.5, retarder, {{0, 0, 0}, turn});
+            s.sphere(0.4, cloud, {{0, 0, 0}, turn});
+        };
+        if (element) s.placed("element", subscene(s.scene([&] { fill({0, 0, 0, 1}); })), {{0, 0, 0}, turned});
+        else fill(turned);
+        s.perspective(0.9, at(0, 0, 1.2));
+        s.document["nodes"].back()["extensions"]["ETD_optics"]["receiver"] = {{"stokes", true}};
+        return s.import();
+    };
+    RenderPlan plan;
+    plan.width = 16, plan.height = 16, plan.seeds = 16, plan.passes = 256, plan.stokes = true;
+    const Estimates expected = render_estimates(build(false), plan);
+    plan.first_seed = 701;
+    check_agreement("Stokes images", render_estimates(build(true), plan), expected, 0.003, 0.02, 4);
+}
