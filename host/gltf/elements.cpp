@@ -153,7 +153,12 @@ void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
     import.scene.elements.push_back(element);
     std::optional<uint32_t> scene;
     if (holds_scene) scene = index_value(member(at, "scene"), array_size(import.root, "scenes"), "/scenes");
-    import.elements.push_back({scene, parts.rest, at});
+    // In the digits of floats, so that what turning leaves of them makes no two scales of one.
+    glm::dmat3 scale = glm::dmat3(glm::mat3(parts.rest));
+    for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < c; ++r)
+            if (std::abs(scale[c][r]) < 1e-9 * std::abs(scale[c][c])) scale[c][r] = 0;
+    import.elements.push_back({scene, scale, at});
 }
 
 void load_elements(GltfImport& import, uint32_t root_scene) {

@@ -284,7 +284,8 @@ void SceneCompiler::measure_lights() {
             fail_input("{}: light {} shines from infinity within an optical element; allowed: in the scene",
                        in_.file.string(), light_names_[i]);
         powers.push_back(bounds[i].power);
-        if (is_unmet(bounds[i])) out_.unmet_lights.push_back(light_names_[i]);
+        const bool is_enclosed_point = element_of_light(i) != 0 && bounds[i].lo == bounds[i].hi;
+        if (is_unmet(bounds[i]) || is_enclosed_point) out_.unmet_lights.push_back(light_names_[i]);
         out_.power += bounds[i].power;
         if (primitive != no_record) positions[primitive] = position;
     }

@@ -19,7 +19,7 @@ def guide(s, pitch, lumens):
     for name, y, normal in (("lower", -h, [0, -1, 0]), ("upper", h, [0, 1, 0])):
         s.shape(name, "rectangle", clear, matrix=facing([0, y, 0], normal, (0, 0, 1)), size=[WIDTH, THICKNESS])
     dots = dict(pitch=[pitch, pitch], shape="dome", radius=0.3 * pitch, depth=0.1 * pitch, operation="remove")
-    s.shape("dots", "microstructure", clear, matrix=facing([0, 0, -t], [0, 0, -1]), size=[WIDTH, HEIGHT], placement="jittered", **dots)
+    s.shape("dots", "microstructure", clear, matrix=facing([0, 0, -t], [0, 0, -1]), size=[WIDTH, HEIGHT], placement="jittered", density=0.06, **dots)
     s.shape("foil", "rectangle", foil, matrix=facing([0, 0, -t - 2e-4], [0, 0, 1]), size=[WIDTH, HEIGHT])
     s.shape("leds", "rectangle", leds, matrix=facing([-w - 2e-4, 0, 0], [1, 0, 0]), size=[led_height, HEIGHT])
 
@@ -29,6 +29,8 @@ def guide_scene(name, pitch, words):
     s.medium("acrylic", ior=1.49)
     inner = s.scene("guide", lambda: guide(s, pitch, 100))
     s.element("guide", facing([0, 0, 0], [0, 0, 1]), inner)
+    sheet = s.surface("diffuser", "diffuse_transmitter", reflectance=0.3, transmittance=0.6)
+    s.shape("diffuser", "rectangle", sheet, matrix=facing([0, 0, 0.004], [0, 0, 1]), size=[WIDTH, HEIGHT])
     s.camera([0, -0.25, 0.6], [0, 0, 0], 30, 4 / 3)
     s.receiver("front", facing([0, 0, 0.002], [0, 0, -1]), "illuminance", size=[WIDTH, HEIGHT], resolution=[8, 5])
     return s
@@ -39,7 +41,7 @@ def light_guide():
         "light_guide",
         1e-4,
         "The light guide of a display, 0.4 x 0.25 m of acrylic glass (index 1.49), 3 mm thick, with 10 million dents of 60 x 10 µm in its back,"
-        " somewhere in cells of 0.1 mm, a white foil behind it, and 100 lm of light from its left edge: an optical element. GUIDE",
+        " somewhere in cells of 0.1 mm, a white foil behind it, and 100 lm of light from its left edge: an optical element. A diffusing sheet lies 2 mm before it; the meter `front` stands between them.",
     )
 
 
@@ -56,7 +58,7 @@ def housing():
     s = Gltf(
         "housing",
         "Elements within elements: a black housing, open in front, holds a light guide and an array of 40 x 25 lenses of acrylic glass"
-        " before it. The camera sees bright lenses, each with its small image of the guide, within the dark walls; an observer who walks by sees the walls hide them one by one.",
+        " before it, behind a diffusing pane. Floor and pane are lit by what comes out.",
     )
     s.medium("acrylic", ior=1.49)
     black = s.surface("black", "lambertian", reflectance=0.03)
@@ -80,6 +82,8 @@ def housing():
         s.element("lenses", facing([0, 0, 0.02], [0, 0, 1]), lens_index)
 
     s.element("housing", facing([0, 0.2, 0], [0.2, 0.1, 1]), s.scene("housing", inside))
+    pane = s.surface("pane", "diffuse_transmitter", reflectance=0.3, transmittance=0.6)
+    s.shape("pane", "rectangle", pane, matrix=facing([0.0144, 0.2072, 0.072], [0.2, 0.1, 1]), size=[WIDTH + 0.02, HEIGHT + 0.02])
     floor = s.surface("floor", "lambertian", reflectance=[0.5, 0.45, 0.4])
     s.quad("floor", floor, [[-0.6, 0, 0.6], [0.6, 0, 0.6], [0.6, 0, -0.4], [-0.6, 0, -0.4]])
     s.camera([0.15, 0.35, 0.9], [0, 0.17, 0], 34, 4 / 3)
