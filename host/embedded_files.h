@@ -11,6 +11,7 @@ struct EmbeddedFile {
 };
 const std::vector<EmbeddedFile>& embedded_shaders();  // shaders/
 const std::vector<EmbeddedFile>& embedded_spectra();  // host/spectra/
+const std::vector<EmbeddedFile>& embedded_glasses();  // host/lens/
 const std::vector<EmbeddedFile>&
 embedded_showcases();  // of scenes/, what the examples of classes stand in and name
 

@@ -1,0 +1,116 @@
+#include "host/lens/pupil_rays.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace etendue {
+namespace {
+
+using FieldKind = Prescription::FieldKind;
+constexpr double degree = std::numbers::pi / 180;
+
+}  // namespace
+
+FieldRays::FieldRays(const Prescription& p, const ParaxialFigures& figures, const LensField& field)
+    : p_(p), figures_(figures), field_(field) {
+    const bool is_far = std::isinf(p.object_distance);
+    const double to_pupil = p.object_distance + figures.entrance_pupil;
+    switch (p.field_kind) {
+        case FieldKind::angle:
+            origin_ = glm::tan(degree * field.value) * (is_far ? 1 : -to_pupil);
+            return;
+        case FieldKind::object_height:
+            origin_ = field.value;
+            return;
+        default:
+            break;
+    }
+    const double scale = is_far ? 1 / figures.focal_length : 1 / figures.magnification;
+    origin_ = scale * field.value;
+    if (p.field_kind == FieldKind::paraxial_image_height) return;
+    // Until the chief ray comes to the height: the paraxial scale corrects what is missing.
+    const LensTracer tracer(p, p.primary_nm());
+    for (int turn = 0; turn < 50; ++turn) {
+        const TracedRay chief = tracer.trace(ray({0, 0}));
+        if (chief.fate != TracedRay::Fate::arrives) return;
+        const glm::dvec2 missing = field.value - glm::dvec2(chief.at_image().position);
+        origin_ += scale * missing;
+        if (glm::length(missing) < 1e-12 * (1 + glm::length(field.value))) return;
+    }
+}
+
+LensRay FieldRays::ray(const glm::dvec2& pupil) const {
+    const glm::dvec2 at =
+        0.5 * figures_.entrance_diameter * (field_.pupil_shift + (1.0 - field_.pupil_compression) * pupil);
+    const double z = figures_.entrance_pupil;
+    if (std::isinf(p_.object_distance))
+        return {{at - z * origin_, 0}, glm::normalize(glm::dvec3(origin_, 1))};
+    const glm::dvec2 slope = (at - origin_) / (p_.object_distance + z);
+    return {{origin_ + p_.object_distance * slope, 0}, glm::normalize(glm::dvec3(slope, 1))};
+}
+
+std::vector<glm::dvec2> pupil_grid(size_t across) {
+    std::vector<glm::dvec2> points;
+    for (size_t j = 0; j < across; ++j)
+        for (size_t i = 0; i < across; ++i) {
+            const glm::dvec2 p = (glm::dvec2(i, j) + 0.5) * (2.0 / double(across)) - 1.0;
+            if (glm::dot(p, p) <= 1) points.push_back(p);
+        }
+    return points;
+}
+
+LensSpot lens_spot(const Prescription& p, const ParaxialFigures& figures, const LensField& field,
+                   size_t across) {
+    const FieldRays rays(p, figures, field);
+    LensSpot spot;
+    const std::vector<glm::dvec2> grid = pupil_grid(across);
+    std::vector<glm::dvec3> hits;  // and weight
+    double weight = 0;
+    for (size_t w = 0; w < p.wavelengths.size(); ++w) {
+        const LensTracer tracer(p, p.wavelengths[w].nm);
+        size_t arrived = 0;
+        for (const glm::dvec2& point : grid) {
+            const TracedRay traced = tracer.trace(rays.ray(point));
+            if (!traced.passes()) continue;
+            ++arrived;
+            hits.emplace_back(glm::dvec2(traced.at_image().position), p.wavelengths[w].weight);
+            spot.centroid += hits.back().z * glm::dvec2(hits.back());
+            weight += hits.back().z;
+        }
+        if (w != p.primary) continue;
+        spot.clear = double(arrived) / double(grid.size());
+        const TracedRay chief = tracer.trace(rays.ray({0, 0}));
+        spot.chief =
+            chief.fate == TracedRay::Fate::arrives ? glm::dvec2(chief.at_image().position) : glm::dvec2(NAN);
+    }
+    spot.centroid /= weight;
+    for (const glm::dvec3& hit : hits) {
+        const double r = glm::distance(glm::dvec2(hit), spot.centroid);
+        spot.rms += hit.z * r * r / weight;
+        spot.greatest = std::max(spot.greatest, r);
+    }
+    spot.rms = std::sqrt(spot.rms);
+    return spot;
+}
+
+void set_missing_semi_diameters(Prescription& p) {
+    const ParaxialFigures figures = paraxial_figures(p, p.primary_nm());
+    std::vector<double> needed(p.surfaces.size(), 0);
+    for (const LensWavelength& w : p.wavelengths) {
+        const LensTracer tracer(p, w.nm);
+        for (const LensField& field : p.fields) {
+            const FieldRays rays(p, figures, field);
+            for (int i = 0; i < 32; ++i) {
+                const double turn = 2 * std::numbers::pi * i / 32;
+                const TracedRay traced = tracer.trace(rays.ray({std::cos(turn), std::sin(turn)}));
+                for (size_t s = 0; s < traced.points.size(); ++s)
+                    needed[s] = std::max(needed[s], glm::length(glm::dvec2(traced.points[s].position)));
+            }
+        }
+    }
+    for (size_t s = 0; s < p.surfaces.size(); ++s)
+        if (LensAperture& a = p.surfaces[s].aperture; std::isinf(a.extent()) && needed[s] > 0)
+            a.semi_diameter = needed[s];
+}
+
+}  // namespace etendue
