@@ -98,8 +98,9 @@ struct Prescription {
 };
 
 // Fails with one line where an aperture is larger than its sphere or conic, where surfaces cross within their
-// apertures, or where the glass has no data at a wavelength.
-void check_prescription(const Prescription& p);
+// apertures, or where the glass has no data at a wavelength. Apertures that the file does not fix end where
+// glass does, with a warning.
+void check_prescription(Prescription& p);
 
 // Zemax (.zmx) and CODE V (.seq) files, and tables: whose rows hold radius (0 = plane), thickness behind,
 // index or glass behind and diameter of a surface, then, if wanted, its conic constant and the coefficients

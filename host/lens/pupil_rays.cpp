@@ -12,36 +12,56 @@ constexpr double degree = std::numbers::pi / 180;
 }  // namespace
 
 FieldRays::FieldRays(const Prescription& p, const ParaxialFigures& figures, const LensField& field)
-    : p_(p), figures_(figures), field_(field) {
+    : p_(p), figures_(figures), tracer_(p, p.primary_nm()), field_(field) {
     const bool is_far = std::isinf(p.object_distance);
-    const double to_pupil = p.object_distance + figures.entrance_pupil;
-    switch (p.field_kind) {
-        case FieldKind::angle:
-            origin_ = glm::tan(degree * field.value) * (is_far ? 1 : -to_pupil);
-            return;
-        case FieldKind::object_height:
-            origin_ = field.value;
-            return;
-        default:
-            break;
-    }
+    glm::dvec2 origin = field.value;
+    if (p.field_kind == FieldKind::angle)
+        origin =
+            glm::tan(degree * field.value) * (is_far ? 1 : -(p.object_distance + figures.entrance_pupil));
     const double scale = is_far ? 1 / figures.focal_length : 1 / figures.magnification;
-    origin_ = scale * field.value;
-    if (p.field_kind == FieldKind::paraxial_image_height) return;
+    const bool is_image =
+        p.field_kind == FieldKind::paraxial_image_height || p.field_kind == FieldKind::real_image_height;
+    if (is_image) origin *= scale;
+    constexpr int steps = 8;  // outwards, since the first aim must come through
+    for (int i = 1; i <= steps; ++i) origin_ = origin * (double(i) / steps), aim();
+    if (p.field_kind != FieldKind::real_image_height) return;
     // Until the chief ray comes to the height: the paraxial scale corrects what is missing.
-    const LensTracer tracer(p, p.primary_nm());
     for (int turn = 0; turn < 50; ++turn) {
-        const TracedRay chief = tracer.trace(ray({0, 0}));
+        const TracedRay chief = tracer_.trace(ray({0, 0}));
         if (chief.fate != TracedRay::Fate::arrives) return;
         const glm::dvec2 missing = field.value - glm::dvec2(chief.at_image().position);
-        origin_ += scale * missing;
+        origin_ += scale * missing, aim();
         if (glm::length(missing) < 1e-12 * (1 + glm::length(field.value))) return;
     }
 }
 
+// Newton's method on each axis, by differences; stays where it is if rays do not come to the stop.
+void FieldRays::aim() {
+    if (p_.is_telecentric || origin_ == glm::dvec2(0)) return;
+    const glm::dvec2 shift = field_.pupil_shift;
+    field_.pupil_shift = {0, 0};
+    const double step = 1e-4 * figures_.entrance_diameter;
+    const auto at_stop = [&](const glm::dvec2& middle) -> std::optional<glm::dvec2> {
+        middle_ = middle;
+        const TracedRay traced = tracer_.trace(ray({0, 0}));
+        if (traced.points.size() <= p_.stop) return {};
+        return glm::dvec2(traced.points[p_.stop].position);
+    };
+    glm::dvec2 middle = middle_;
+    for (int turn = 0; turn < 30; ++turn) {
+        const auto here = at_stop(middle), there = at_stop(middle + step);
+        if (!here || !there) break;
+        const glm::dvec2 move = *here * step / (*there - *here);
+        if (!(glm::length(move) < figures_.entrance_diameter)) break;
+        middle -= move;
+        if (glm::length(move) < 1e-13 * figures_.entrance_diameter) break;
+    }
+    middle_ = middle, field_.pupil_shift = shift;
+}
+
 LensRay FieldRays::ray(const glm::dvec2& pupil) const {
-    const glm::dvec2 at =
-        0.5 * figures_.entrance_diameter * (field_.pupil_shift + (1.0 - field_.pupil_compression) * pupil);
+    const glm::dvec2 at = middle_ + 0.5 * figures_.entrance_diameter *
+                                        (field_.pupil_shift + (1.0 - field_.pupil_compression) * pupil);
     const double z = figures_.entrance_pupil;
     if (std::isinf(p_.object_distance))
         return {{at - z * origin_, 0}, glm::normalize(glm::dvec3(origin_, 1))};

@@ -5,7 +5,9 @@
 
 namespace etendue {
 
-// The rays of a field through the paraxial entrance pupil of the primary wavelength.
+// The rays of a field through the entrance pupil: as large as the paraxial one of the primary wavelength, and
+// shifted so that its middle is where the ray through the middle of the stop goes (a chief ray; of wide
+// fields, pupils wander).
 class FieldRays {
   public:
     // `figures`: of the primary wavelength.
@@ -14,10 +16,14 @@ class FieldRays {
     LensRay ray(const glm::dvec2& pupil) const;
 
   private:
+    void aim();
+
     const Prescription& p_;
     const ParaxialFigures& figures_;
+    LensTracer tracer_;
     LensField field_;
     glm::dvec2 origin_{0};  // tangents of the angles, or, where the object is near, its point in mm
+    glm::dvec2 middle_{0};  // mm, of the pupil
 };
 
 // Points of a square grid of `across` points within the unit disk.

@@ -192,8 +192,7 @@ class SeqReader {
         if (!(size >= 0)) text_.fail(line_, "{} {}; must not be negative", key, size);
         if (is_inner && key != "CIR") {
             p_.warnings.push_back(
-                fmt::format("surface {}: {} {} is left out: apertures are circles, rings and rectangles",
-                            p_.surfaces.size(), key, kind));
+                fmt::format("surface {}: {} {} is left out", p_.surfaces.size(), key, kind));
             return;
         }
         (key == "REX"   ? a.half_size.x

@@ -152,7 +152,8 @@ class ZmxReader {
             s.aperture.half_size = {number(1), number(2)}, s.aperture.is_stated = true;
         else if (key == "OBDC")
             s.aperture.center = {number(1), number(2)};
-        else if (key == "ELAP" || key == "SPID" || key == "UDAP" || key == "SQOB" || key == "ELOB")
+        else if (key == "ELAP" || key == "SPID" || key == "UDAP" || key == "SQOB" || key == "ELOB" ||
+                 key == "SCBD")
             p_.warnings.push_back(
                 fmt::format("surface {}: {} is left out: apertures are circles, rings and rectangles",
                             surfaces_.size() - 1, key));
