@@ -12,6 +12,7 @@ int bench_command(const BenchOptions& options);
 int view_command(const ViewOptions& options);
 int rays_command(const RaysOptions& options);
 int inspect_command(const InspectOptions& options);
+int lens_command(const LensOptions& options);
 int classes_command(const ClassesOptions& options);
 int devices_command();
 

@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
                                  [](const ViewOptions& o) { return view_command(o); },
                                  [](const RaysOptions& o) { return rays_command(o); },
                                  [](const InspectOptions& o) { return inspect_command(o); },
+                                 [](const LensOptions& o) { return lens_command(o); },
                                  [](const ClassesOptions& o) { return classes_command(o); },
                                  [](const DevicesOptions&) { return devices_command(); }},
                       parse_command_line(argc, argv));

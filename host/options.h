@@ -121,6 +121,12 @@ struct RaysOptions : SceneChoice {
     uint64_t seed = 0;
 };
 
+struct LensOptions {
+    std::filesystem::path lens;
+    std::filesystem::path output;  // .svg or .csv; empty = none
+    uint32_t rays = 7;             // of each field across the pupil, in `output`
+};
+
 struct ClassesOptions {
     std::string name;               // empty = all
     std::filesystem::path html;     // page to write instead; empty = none

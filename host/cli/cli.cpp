@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "host/cli/lens.h"
 #include "host/cli/measure.h"
 #include "host/cli/merge.h"
 #include "host/cli/rays.h"
@@ -181,6 +182,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     RaysArguments rays_arguments;
     InspectOptions inspect_options;
     SharedArguments inspect_arguments;
+    LensOptions lens_options;
+    std::optional<std::string> lens_rays;
     MergeOptions merge_options;
     std::optional<std::string> merge_passes;
     ClassesOptions classes_options;
@@ -193,18 +196,19 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CLI::App* rays = add_rays(app, rays_options, rays_arguments);
     CLI::App* inspect = add_inspect(app, inspect_options, inspect_arguments);
     CLI::App* merge = add_merge(app, merge_options, merge_passes);
+    CLI::App* lens = add_lens(app, lens_options, lens_rays);
     CLI::App* classes = add_classes(app, classes_options, classes_passes);
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
 
-    const auto commands = {render, measure, merge, view, rays, compare, bench, inspect, classes, devices};
+    const auto commands = {render, measure, merge, view, rays, compare, bench, inspect, lens, classes, devices};
     std::string first = argc < 2 ? "" : argv[1];
     bool known = first.starts_with("-");
     for (CLI::App* command : commands) known = known || first == command->get_name();
     if (!known)
         fail_input(
-            "{}; one of: render, measure, merge, view, rays, compare, bench, inspect, classes, devices (see "
-            "etendue --help)",
+            "{}; one of: render, measure, merge, view, rays, compare, bench, inspect, lens, classes, devices "
+            "(see etendue --help)",
             argc < 2 ? "no command given" : fmt::format("no command '{}'", first));
 
     CLI::App* chosen = &app;
@@ -258,6 +262,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         if (inspect_options.json && inspect_options.algorithm != Algorithm::automatic)
             fail_input("--json: tells what auto chooses, and goes without --algorithm");
         return inspect_options;
+    }
+    if (lens->parsed()) {
+        finish_lens(lens_options, lens_rays);
+        return lens_options;
     }
     if (classes->parsed()) {
         finish_classes(classes_options, classes_passes);
