@@ -10,7 +10,9 @@
 namespace etendue {
 namespace {
 
-std::string length(double mm) { return std::isfinite(mm) ? fmt::format("{:.7g}", mm + 0.0) : "infinite";  // + 0: no -0 }
+std::string length(double mm) {
+    return std::isfinite(mm) ? fmt::format("{:.7g}", mm + 0.0) : "infinite";  // + 0: no -0
+}
 
 std::string kind_of(const Prescription& p, size_t i) {
     const LensSurface& s = p.surfaces[i];
@@ -128,10 +130,11 @@ const char* fate_name(const TracedRay& traced) {
     }
 }
 
-// A row a ray and surface; surface "start" is where the ray enters the frame of the first one.
+// A row a ray and surface, with the index behind it; surface "start" is where the ray enters the frame of
+// the first.
 std::string rays_as_csv(const Prescription& p, const ParaxialFigures& f, size_t across) {
     Table table = {{"field", "wavelength_nm", "pupil_x", "pupil_y", "surface", "x_mm", "y_mm", "z_mm",
-                    "direction_x", "direction_y", "direction_z", "fate"}};
+                    "direction_x", "direction_y", "direction_z", "index", "fate"}};
     for (size_t i = 0; i < p.fields.size(); ++i) {
         const FieldRays rays(p, f, p.fields[i]);
         for (const LensWavelength& w : p.wavelengths) {
@@ -139,19 +142,20 @@ std::string rays_as_csv(const Prescription& p, const ParaxialFigures& f, size_t 
             for (const glm::dvec2& pupil : pupil_grid(across)) {
                 const LensRay start = rays.ray(pupil);
                 const TracedRay traced = tracer.trace(start);
-                const auto add = [&](const std::string& surface, const LensRay& ray) {
-                    std::vector<std::string> row = {std::to_string(i + 1)};
-                    for (const double value : {w.nm, pupil.x, pupil.y})
-                        row.push_back(fmt::format("{}", value));
-                    row.push_back(surface);
-                    for (int axis = 0; axis < 3; ++axis) row.push_back(fmt::format("{}", ray.position[axis]));
-                    for (int axis = 0; axis < 3; ++axis)
-                        row.push_back(fmt::format("{}", ray.direction[axis]));
-                    row.push_back(fate_name(traced));
-                    table.push_back(row);
+                const auto add = [&](const std::string& surface, const LensRay& ray, const Glass& glass) {
+                    table.push_back({std::to_string(i + 1)});
+                    const auto add_numbers = [&](std::initializer_list<double> values) {
+                        for (const double value : values) table.back().push_back(fmt::format("{}", value));
+                    };
+                    const auto& [x, d] = ray;
+                    add_numbers({w.nm, pupil.x, pupil.y});
+                    table.back().push_back(surface);
+                    add_numbers({x.x, x.y, x.z, d.x, d.y, d.z, glass.index(w.nm)});
+                    table.back().push_back(fate_name(traced));
                 };
-                add("start", start);
-                for (size_t s = 0; s < traced.points.size(); ++s) add(p.surfaces[s].label, traced.points[s]);
+                add("start", start, p.object_glass);
+                for (size_t s = 0; s < traced.points.size(); ++s)
+                    add(p.surfaces[s].label, traced.points[s], p.surfaces[s].glass);
             }
         }
     }
