@@ -1,10 +1,10 @@
-// Lenses: paraxial figures and real rays against values that are known in closed form, or from patents.
+// Lenses: paraxial figures and real rays against values that are known in closed form, or from patents. Their
+// files: lens_file_test.cpp.
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdlib>
+#include <numbers>
 
-#include "host/error.h"
 #include "host/lens/pupil_rays.h"
 #include "tests/support/source_path.h"
 #include "tests/support/temporary_folder.h"
@@ -36,7 +36,9 @@ double crossing(const Prescription& p, double height) {
     return last.position.z - last.position.y * last.direction.z / last.direction.y;
 }
 
-doctest::Approx about(double value, double relative = 1e-7) { return doctest::Approx(value).epsilon(relative); }
+doctest::Approx about(double value, double relative = 1e-7) {
+    return doctest::Approx(value).epsilon(relative);
+}
 
 const char* double_gauss = "tests/host/lenses/own_dgauss_tronnier.txt";
 
@@ -44,7 +46,8 @@ const char* double_gauss = "tests/host/lenses/own_dgauss_tronnier.txt";
 
 TEST_CASE("a plano-convex lens has its focal length, its focus and its spherical aberration") {
     for (const auto& [table, focus, crossings] :
-         {std::tuple{"50 10 1.5 40\n0 93.3333 1 40\n", 93.333333333, glm::dvec3(93.045487, 92.172002, 90.681145)},
+         {std::tuple{"50 10 1.5 40\n0 93.3333 1 40\n", 93.333333333,
+                     glm::dvec3(93.045487, 92.172002, 90.681145)},
           std::tuple{"0 10 1.5 40\n-50 100 1 40\n", 100.0, glm::dvec3(98.870029, 95.417983, 89.436241)}}) {
         const Prescription p = lens(table);
         CHECK(figures(p).focal_length == about(100));
@@ -54,9 +57,7 @@ TEST_CASE("a plano-convex lens has its focal length, its focus and its spherical
 }
 
 TEST_CASE("a ball lens") {
-    const auto ball = [](const std::string& index) {
-        return lens("5 10 " + index + " 10\n-5 2 1 10\n");
-    };
+    const auto ball = [](const std::string& index) { return lens("5 10 " + index + " 10\n-5 2 1 10\n"); };
     CHECK(figures(ball("1.5")).focal_length == about(7.5));
     CHECK(figures(ball("1.5")).rear_focus == about(2.5));
     CHECK(figures(ball("1.5")).front_principal == about(5));
@@ -81,7 +82,8 @@ TEST_CASE("conics that are perfect bring all rays to one point") {
 }
 
 TEST_CASE("the aplanatic points of a sphere: all rays from one seem to come from the other") {
-    // Light from within a ball of index 1.5, 20/3 mm before its centre, leaves it as from 15 mm before the centre.
+    // Light from within a ball of index 1.5, 20/3 mm before its centre, leaves it as from 15 mm before the
+    // centre.
     Prescription ball;
     ball.object_glass = Glass::constant("1.5", 1.5), ball.object_distance = 50.0 / 3;
     ball.surfaces.resize(2);
@@ -96,7 +98,8 @@ TEST_CASE("the aplanatic points of a sphere: all rays from one seem to come from
         REQUIRE(traced.points.size() >= 1);
         const LensRay& out = traced.points[0];
         CHECK(out.position.z - out.position.y * out.direction.z / out.direction.y == about(-25, 1e-12));
-        CHECK(std::sin(angle) / out.direction.y == about(1.5, 1e-12));  // Abbe's condition: m = 2.25 = 1.5 × 1.5
+        CHECK(std::sin(angle) / out.direction.y ==
+              about(1.5, 1e-12));  // Abbe's condition: m = 2.25 = 1.5 × 1.5
     }
 }
 
@@ -110,15 +113,17 @@ TEST_CASE("Tronnier's double Gauss") {
     CHECK(f.f_number == about(2.03015, 2e-6));
     CHECK(f.entrance_pupil == about(39.89297, 2e-7));
     CHECK(f.exit_pupil == about(-35.54271));
-    const double heights[] = {5, 10, 15, 20, 25}, expected[] = {-.001325, -.008851, -.019242, -.006489, .094472};
+    const double heights[] = {5, 10, 15, 20, 25},
+                 expected[] = {-.001325, -.008851, -.019242, -.006489, .094472};
     p.surfaces[p.surfaces.size() - 2].thickness = f.rear_focus;
-    for (int i = 0; i < 5; ++i) CHECK(std::abs(parallel(p, heights[i]).at_image().position.y - expected[i]) < 6e-7);
+    for (int i = 0; i < 5; ++i)
+        CHECK(std::abs(parallel(p, heights[i]).at_image().position.y - expected[i]) < 6e-7);
     Prescription near = p;
     near.object_distance = 2000;
     CHECK(figures(near).image == about(77.42510));
     CHECK(figures(near).magnification == about(-.0517621, 1e-6));
-    // Spots over the whole pupil, as a program of few lines in Python finds them, too; on coarse grids they are told
-    // as .02888 .0406 .0636 .0749, the clear part as 1 .903 .740 .596.
+    // Spots over the whole pupil, as a program of few lines in Python finds them, too; on coarse grids they
+    // are told as .02888 .0406 .0636 .0749, the clear part as 1 .903 .740 .596.
     const double angles[] = {0, 5, 10, 14}, rms[] = {.02747, .04015, .06359, .07488},
                  clear[] = {1, .9103, .7484, .6025}, chief[] = {0, 8.80689, 17.71974, 24.99567};
     for (int i = 0; i < 4; ++i) {
@@ -130,39 +135,124 @@ TEST_CASE("Tronnier's double Gauss") {
     }
 }
 
-// ---- Files of others
-
-namespace {
-
-// Empty where they are absent, of which it tells.
-std::filesystem::path shared_lenses() {
-    const char* shared = std::getenv("ETENDUE_SHARED");
-    const std::filesystem::path folder = std::filesystem::path(shared ? shared : "") / "photometry/lenses";
-    if (shared && std::filesystem::exists(folder)) return folder;
-    MESSAGE("SKIPPED: shared lens files are not there");
-    return {};
-}
-
-double focal_length(const Prescription& p, double at_nm) { return paraxial_figures(p, at_nm).focal_length; }
-
-}  // namespace
-
-TEST_CASE("lens files: focal lengths of the shared files") {
-    const std::filesystem::path folder = shared_lenses();
-    if (folder.empty()) return;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        try {
-            const Prescription p = read_prescription(entry.path());
-            const ParaxialFigures f = figures(p);
-            std::string line = fmt::format("{}: {} surfaces, EFL {} BFL {} EPD {} F/{}", entry.path().filename().string(), p.surfaces.size(), f.focal_length, f.rear_focus, f.entrance_diameter, f.f_number);
-            for (const LensField& field : p.fields) {
-                const LensSpot spot = lens_spot(p, f, field, 32);
-                line += fmt::format("\n   {} {}: chief {} {} rms {} clear {}", field.value.x, field.value.y, spot.chief.x, spot.chief.y, spot.rms, spot.clear);
-            }
-            for (auto& w : p.warnings) line += "\n   " + w;
-            MESSAGE(line);
-        } catch (const Error& e) {
-            MESSAGE(std::string(e.what()));
+TEST_CASE("lines meet surfaces on the sheet of the vertex") {
+    const auto meet = [](const SurfaceShape& shape, glm::dvec3 from, glm::dvec3 towards,
+                         double radius = infinite) {
+        const glm::dvec3 d = glm::normalize(towards);
+        const auto t = shape.intersect(from, d, radius);
+        return t ? from + *t * d : glm::dvec3(NAN);
+    };
+    SUBCASE("a paraboloid, along its axis, where the equation is no longer quadratic") {
+        const SurfaceShape paraboloid{-0.01, -1};
+        CHECK(meet(paraboloid, {10, 0, -50}, {0, 0, 1}).z == about(-0.5, 1e-15));
+        CHECK(meet(paraboloid, {10, 0, -50}, {1e-13, 0, 1}).z == about(-0.5, 1e-12));
+    }
+    SUBCASE("a plane") { CHECK(meet({}, {3, 4, -5}, {0, 0.6, 0.8}) == glm::dvec3(3, 7.75, 0)); }
+    SUBCASE("a steep hyperboloid has another sheet, which is not met") {
+        const SurfaceShape hyperboloid{-0.1, -10};  // the other vertex at z = 2 / (c (1 + K)) = 20/9
+        const glm::dvec3 at = meet(hyperboloid, {1, 0, 30}, {0, 0, -1});
+        CHECK(at.z == about(hyperboloid.sag(1, 0), 1e-15));
+        CHECK(at.z < 0);
+        // A flat line that would come to the other sheet first.
+        CHECK(meet(hyperboloid, {0, 0, 10}, {0.02, 0, -1}).z < 0);
+    }
+    SUBCASE("a start on the surface stays there") {
+        for (const double conic : {0.0, -1.0, -4.0}) {
+            const SurfaceShape shape{0.02, conic};
+            const glm::dvec3 on(3, 5, shape.sag(3, 5));
+            CHECK(glm::distance(meet(shape, on, {0.1, -0.2, 1}), on) < 1e-14);
         }
     }
+    SUBCASE("of two crossings that within the aperture") {
+        const SurfaceShape sphere{0.1, 0};
+        // Along a chord at z = 6: both crossings lie 8 mm from the axis; shifted, one lies beyond the
+        // aperture.
+        CHECK(meet(sphere, {-20, 0, 5}, {1, 0, 0.05}, 8.5).x ==
+              about(meet(sphere, {-20, 0, 5}, {1, 0, 0.05}).x));
+        const glm::dvec3 near = meet(sphere, {-20, 0, 3}, {1, 0, 0.2}, 9);
+        CHECK(std::abs(near.x) <= 9);
+        CHECK(near.z == about(sphere.sag(near.x, 0), 1e-12));
+    }
+    SUBCASE("an asphere equals the conic it expands, to the order of the expansion") {
+        // A sphere of radius 100 as its series: c/2 r² + c³/8 r⁴ + c⁵/16 r⁶ + 5 c⁷/128 r⁸ + 7 c⁹/256 r¹⁰.
+        const double c = 0.01;
+        const SurfaceShape sphere{c, 0}, series{0,
+                                                0,
+                                                {c / 2, std::pow(c, 3) / 8, std::pow(c, 5) / 16,
+                                                 5 * std::pow(c, 7) / 128, 7 * std::pow(c, 9) / 256}};
+        const glm::dvec3 a = meet(sphere, {2, -3, -40}, {0.1, 0.2, 1}),
+                         b = meet(series, {2, -3, -40}, {0.1, 0.2, 1});
+        CHECK(glm::distance(a, b) < 1e-10);
+        CHECK(glm::distance(sphere.normal(a), series.normal(b)) < 1e-11);
+        CHECK(series.vertex_curvature() == c);
+    }
+    SUBCASE("an asphere that turns back") {
+        const SurfaceShape gull{0.05, -1, {0, -2e-4}};
+        for (const double x : {0.0, 3.0, 8.0, 12.0, 16.0}) {
+            const glm::dvec3 at = meet(gull, {x, 1, -200}, {0.05, 0, 1}, 20);
+            CHECK(std::abs(at.z - gull.sag(at.x, at.y)) < 1e-12);
+        }
+    }
+    SUBCASE("far starts lose nothing") {
+        const SurfaceShape shape{0.02, -0.5, {0, 1e-6}};
+        const glm::dvec3 d = glm::normalize(glm::dvec3(0.1, 0.05, 1)), here = meet(shape, {1, 2, -10}, d);
+        CHECK(glm::distance(meet(shape, glm::dvec3(1, 2, -10) - 1e5 * d, d), here) < 1e-10);
+    }
+    SUBCASE("what misses, misses") {
+        CHECK(std::isnan(meet({0.1, 0}, {0, 11, -5}, {0, 0, 1}).z));
+        CHECK(std::isnan(meet({0.1, 0, {0, 1e-5}}, {0, 11, -5}, {0, 0, 1}).z));
+    }
+    SUBCASE("a cylinder is the same for all x") {
+        const SurfaceShape cylinder{0.1, 0, {}, true};
+        CHECK(meet(cylinder, {500, 3, -5}, {0, 0, 1}).z == about(10 - std::sqrt(91.0), 1e-14));
+        CHECK(cylinder.normal({500, 0, 0}) == glm::dvec3(0, 0, 1));
+    }
+}
+
+TEST_CASE("gratings send their orders where the tangential wave vector says") {
+    Prescription p = lens("0 10 1 20\n");
+    p.wavelengths = {{550, 1}};
+    p.surfaces[0].grating = LensGrating{1000, -1};
+    const double tilt = std::numbers::pi / 4;
+    const auto angle = [&](double order, bool mirror = false) {
+        p.surfaces[0].grating->order = order, p.surfaces[0].is_mirror = mirror;
+        const TracedRay traced = LensTracer(p, 550).trace({{0, 0, 0}, {0, std::sin(tilt), std::cos(tilt)}});
+        if (traced.fate == TracedRay::Fate::evanescent) return infinite;
+        const glm::dvec3 d = traced.points[0].direction;
+        CHECK((d.z < 0) == mirror);
+        return std::asin(d.y) * 180 / std::numbers::pi;
+    };
+    CHECK(angle(-1) == about(9.03900, 1e-6));
+    CHECK(angle(-2) == about(-23.13464, 1e-6));
+    CHECK(angle(0) == about(45, 1e-12));
+    CHECK(std::isinf(angle(1)));
+    CHECK(angle(-1, true) == about(9.03900, 1e-6));
+}
+
+TEST_CASE("a mirror's focal length, and light that runs back") {
+    const Prescription p = lens("-100 -50 mirror 20 -1\n");
+    CHECK(figures(p).focal_length == about(50));
+    CHECK(figures(p).rear_focus == about(-50));
+    for (const double height : {1.0, 5.0, 9.0})
+        CHECK(std::abs(parallel(p, height).at_image().position.y) < 1e-13);
+}
+
+TEST_CASE("apertures stop rays, and say where; what is traced goes on") {
+    const Prescription p = lens("50 10 1.5 40\n0 90 1 20\n");
+    CHECK(parallel(p, 5).passes());
+    CHECK(parallel(p, 15).stopped == 1);
+    CHECK(parallel(p, 15).fate == TracedRay::Fate::arrives);
+    CHECK(parallel(p, 21).stopped == 0);
+}
+
+TEST_CASE("fields reach the heights that they name") {
+    Prescription p = read_prescription(source_path(double_gauss));
+    p.field_kind = Prescription::FieldKind::real_image_height;
+    CHECK(lens_spot(p, figures(p), {{0, 20}}, 8).chief.y == about(20, 1e-10));
+    p.object_distance = 2000;
+    p.surfaces[p.surfaces.size() - 2].thickness = figures(p).image;
+    CHECK(lens_spot(p, figures(p), {{3, -15}}, 8).chief.y == about(-15, 1e-10));
+    CHECK(lens_spot(p, figures(p), {{3, -15}}, 8).chief.x == about(3, 1e-10));
+    p.field_kind = Prescription::FieldKind::object_height;
+    CHECK(lens_spot(p, figures(p), {{0, 1}}, 8).chief.y == about(figures(p).magnification, 1e-4));
 }
