@@ -8,7 +8,7 @@
 namespace etendue {
 namespace {
 
-constexpr size_t most_bytes = 16 << 20, most_surfaces = 1000;
+constexpr size_t most_bytes = 16 << 20, most_surfaces = 1000, most_fields = 100, most_wavelengths = 50;
 
 void append_utf8(std::string& text, char32_t c) {
     if (c < 0x80)
@@ -107,6 +107,9 @@ void finish_prescription(const TextLines& text, Prescription& p, double mm) {
                    text.file, p.surfaces.size());
     if (p.surfaces.size() > most_surfaces)
         fail_input("{}: holds {} surfaces; must be at most {}", text.file, p.surfaces.size(), most_surfaces);
+    if (p.fields.size() > most_fields || p.wavelengths.size() > most_wavelengths)
+        fail_input("{}: {} fields and {} wavelengths; must be at most {} and {}", text.file, p.fields.size(),
+                   p.wavelengths.size(), most_fields, most_wavelengths);
     p.surfaces.back().thickness = 0;
     p.object_distance *= mm;
     for (size_t i = 0; i < p.surfaces.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include "host/image/checkpoint.h"
 #include "host/image/exr.h"
+#include "host/lens/drawing.h"
 #include "host/measured/measured_bsdf.h"
 #include "host/measured/mueller_table.h"
 #include "host/photometry/photometric_table.h"
@@ -122,6 +123,14 @@ inline void check_rays(const std::filesystem::path& file) {
                 throw std::logic_error("an alias table leads to rays");
 }
 
+inline void check_lens(const std::filesystem::path& file) {
+    const Prescription p = read_prescription(file);
+    for (const LensSurface& s : p.surfaces)
+        if (!std::isfinite(s.shape.curvature + s.shape.conic + s.thickness + s.glass.index(p.primary_nm())))
+            throw std::logic_error("surfaces are finite");
+    lens_drawing(p, paraxial_figures(p, p.primary_nm()), 3);
+}
+
 inline std::string ray_bytes(const std::string& name) {
     return read_text(source_path("tests/host/rays/" + name));
 }
@@ -209,6 +218,16 @@ inline std::vector<FuzzedReader> fuzzed_readers(const TemporaryFolder& folder) {
             {"led.txt", "2 4\n1 2 3 0 0.6 0.8 0.5 0.55\n0 0 0 0 0 -1 1 0.45\n", check_rays},
             {"lighttools.ray", ray_bytes("own_3rays_lighttools_watt.ray"), check_rays},
             {"speos.ray", ray_bytes("own_3rays_speos.ray"), check_rays},
+            {"lens.zmx",
+             "MODE SEQ\nUNIT CM X\nENPD 1\nFTYP 3 0 2 1\nYFLN 0 1\nVCYN 0 0.1\nWAVM 1 0.55 1\nSURF 0\n DISZ INFINITY\n"
+             "SURF 1\n STOP\n TYPE EVENASPH\n CURV 0.2\n PARM 2 1e-3\n DISZ 0.5\n GLAS N-BK7 0 0 1.5 40\n DIAM 0.7 1\n"
+             "SURF 2\n TYPE COORDBRK\n PARM 3 5\nSURF 3\n CURV -0.2\n CONI -2\n DISZ 5\nSURF 4\n",
+             check_lens},
+            {"lens.seq",
+             "RDM; EPD 10; YRI 0 3\nWL 600 500\nSO 0 200\nS 50 5 517642\nASP; A 1e-6\nCIR 6\nS -50 45\nYDE 1; ADE 5; "
+             "DAR\nSTO\nSI 0 0\n",
+             check_lens},
+            {"lens.txt", "fields 0 5\n50 10 N-SF2 30 -0.5 1e-7\n0 20 1 30\n0 5 1 20 stop\n-80 -50 mirror 60\n", check_lens},
             {"state", checkpoint_bytes(folder), check_checkpoint, seal_checkpoint}};
 }
 

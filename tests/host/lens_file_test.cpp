@@ -251,5 +251,8 @@ TEST_CASE("lens files that cannot be are refused with one line") {
     std::string many;
     for (int i = 0; i < 1001; ++i) many += "0 1 1 10\n";
     check_says(f.complaint("a.txt", many), {"1002 surfaces", "at most 1000"});
+    std::string fields = "fields";
+    for (int i = 0; i < 101; ++i) fields += " 1";
+    check_says(f.complaint("a.txt", fields + "\n50 10 1.5 30\n"), {"101 fields", "at most 100"});
     check_says(f.complaint("a.txt", "50 1e300 1.5 30\n"), {"line 1", "thickness"});
 }
