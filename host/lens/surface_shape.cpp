@@ -48,8 +48,7 @@ glm::dvec3 SurfaceShape::normal(const glm::dvec3& p) const {
 
 // F = c (r² + (1 + K) z²) - 2 z = 0, as A t² + 2 B t + C = 0, solved without a difference of near numbers. On
 // the vertex sheet 1 - c (1 + K) z, the root of the formula for z(r), is not negative.
-std::optional<double> SurfaceShape::intersect_conic(const glm::dvec3& o, const glm::dvec3& d,
-                                                    double radius) const {
+std::optional<double> SurfaceShape::intersect_conic(const glm::dvec3& o, const glm::dvec3& d) const {
     const double c = curvature, k = 1 + conic, flat = is_cylinder ? 0 : 1;
     const double a = c * (flat * d.x * d.x + d.y * d.y + k * d.z * d.z);
     const double b = c * (flat * o.x * d.x + o.y * d.y + k * o.z * d.z) - d.z;
@@ -57,23 +56,16 @@ std::optional<double> SurfaceShape::intersect_conic(const glm::dvec3& o, const g
     const double discriminant = b * b - a * e;
     if (!(discriminant >= 0)) return {};
     const double q = -(b + std::copysign(std::sqrt(discriminant), b));
-    std::optional<double> found;
-    for (const double t : {e / q, q / a}) {  // the first is that of the plane where c = 0
-        if (!std::isfinite(t)) continue;
-        const glm::dvec3 p = o + t * d;
-        if (1 - c * k * p.z < -1e-9) continue;
-        if (squared_r(p) <= radius * radius * (1 + 1e-9)) return t;
-        if (!found) found = t;
-    }
-    return found;
+    for (const double t : {e / q, q / a})  // the first is nearer to the axis, that of the plane where c = 0
+        if (std::isfinite(t) && 1 - c * k * (o.z + t * d.z) >= -1e-9) return t;
+    return {};
 }
 
-std::optional<double> SurfaceShape::intersect(const glm::dvec3& origin, const glm::dvec3& d,
-                                              double radius) const {
+std::optional<double> SurfaceShape::intersect(const glm::dvec3& origin, const glm::dvec3& d) const {
     // From the point of the line that is nearest to the vertex: starts may be far away.
     const double shift = -glm::dot(origin, d);
     const glm::dvec3 o = origin + shift * d;
-    std::optional<double> t = intersect_conic(o, d, radius);
+    std::optional<double> t = intersect_conic(o, d);
     if (coefficients.empty()) {
         if (t) *t += shift;
         return t;

@@ -21,16 +21,16 @@ struct SurfaceShape {
     double vertex_curvature() const;
     glm::dvec3 normal(const glm::dvec3& point) const;  // of a point on it; unit
 
-    // The t at which the line o + t d (d unit) meets the vertex sheet; of two that have r <= `radius` the one
-    // that the crossing of a plane becomes as it bends, of one that lies within `radius` and one that does
-    // not the former. May be negative. None where the line misses it.
-    std::optional<double> intersect(const glm::dvec3& o, const glm::dvec3& d, double radius) const;
+    // The t at which the line o + t d (d unit) meets the vertex sheet; of two crossings of a conic that
+    // nearer to the axis, of an asphere one near that of its conic. May be negative. None where the line
+    // misses it.
+    std::optional<double> intersect(const glm::dvec3& o, const glm::dvec3& d) const;
 
   private:
     double squared_r(const glm::dvec3& p) const { return is_cylinder ? p.y * p.y : p.x * p.x + p.y * p.y; }
     double sag_of(double r2) const;    // of r², continued flat beyond `reach`
     double slope_of(double r2) const;  // dz/d(r²)
-    std::optional<double> intersect_conic(const glm::dvec3& o, const glm::dvec3& d, double radius) const;
+    std::optional<double> intersect_conic(const glm::dvec3& o, const glm::dvec3& d) const;
 };
 
 }  // namespace etendue

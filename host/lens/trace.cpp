@@ -42,7 +42,7 @@ TracedRay LensTracer::trace(const LensRay& start) const {
         const LensSurface& s = p_.surfaces[i];
         ray = in_next_frame(p_, i, ray);
         if (!s.frame_change) {
-            const auto t = s.shape.intersect(ray.position, ray.direction, s.aperture.extent());
+            const auto t = s.shape.intersect(ray.position, ray.direction);
             if (!t) {
                 traced.fate = TracedRay::Fate::misses;
                 return traced;
