@@ -13,6 +13,7 @@
     X(3, Disk, disk)           \
     X(4, Rectangle, rectangle) \
     X(5, Cylinder, cylinder)   \
+    X(6, Asphere, asphere)     \
     X(9, Microstructure, microstructure)
 
 // folder lights/, contract interfaces/light_source.glsl

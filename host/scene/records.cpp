@@ -98,6 +98,11 @@ void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value
             if (!value.is_null() && !p.in_range(x))
                 fail_input("{}: {} is out of range; allowed:{}", place, x, allowed(p));
         store(record, at, SpectrumRef{spectrum.rgb, resolver.spectrum(spectrum, kind)});
+    } else if (type == "AsphereCoefficients") {
+        if (!value.is_array() || value.size() > 8)
+            fail_input("{}: allowed: an array of at most 8 numbers, the coefficients of r^4, r^6, …", place);
+        for (size_t i = 0; i < value.size(); ++i)
+            store(record, at + 4 * uint32_t(i), checked_number(value[i], p, fmt::format("{}/{}", place, i)));
     } else if (type == "MuellerMatrix") {
         if (!value.is_array() || value.size() != 16)
             fail_input("{}: allowed: an array of 16 numbers, row by row", place);

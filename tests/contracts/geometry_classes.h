@@ -9,6 +9,7 @@
 #include <optional>
 #include <random>
 
+#include "host/lens/surface_shape.h"
 #include "tests/support/geometry_probe.h"
 #include "tests/support/light_probe.h"
 #include "tests/support/random.h"
@@ -57,10 +58,65 @@ inline std::optional<glm::dvec3> dome_over(const glm::dvec3& p) {
 inline bool dome_covers(const std::optional<glm::dvec3>& dome, const glm::dvec3& p) {
     return dome && std::hypot(p.x - dome->x, p.y - dome->y) < dome_radius;
 }
+// Of the class `asphere`: all crossings within the rim, by steps and halves.
+struct AsphereOracle {
+    SurfaceShape shape;
+    double aperture;
+
+    double height(glm::dvec3 p) const {
+        const double r = std::hypot(p.x, p.y), reach = shape.reach();
+        return p.z - (r < reach ? shape.sag(p.x, p.y) : shape.sag(reach, 0));
+    }
+    std::vector<double> crossings(glm::dvec3 o, glm::dvec3 d) const {
+        std::vector<double> found;
+        const std::vector<double> ends = quadratic(d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y,
+                                                   o.x * o.x + o.y * o.y - aperture * aperture);
+        if (ends.empty()) return {};
+        // Rays along z are cut by planes.
+        const double low = std::max(ends[0], (d.z > 0 ? -3 - o.z : 3 - o.z) / d.z),
+                     high = std::min(ends[1], (d.z > 0 ? 3 - o.z : -3 - o.z) / d.z);
+        constexpr int steps = 64;
+        for (int i = 0; i < steps && low < high; ++i) {
+            double a = low + (high - low) * i / steps, b = low + (high - low) * (i + 1) / steps;
+            const double at_a = height(o + a * d);
+            // A pair of crossings within a step: where the height is least.
+            std::vector<double> cuts = {a, b};
+            if (at_a * height(o + b * d) > 0) {
+                double l = a, r = b;
+                for (int k = 0; k < 60; ++k) {  // golden section
+                    const double m = r - 0.618033988749895 * (r - l), n = l + 0.618033988749895 * (r - l);
+                    (std::abs(height(o + m * d)) < std::abs(height(o + n * d)) ? r : l) =
+                        std::abs(height(o + m * d)) < std::abs(height(o + n * d)) ? n : m;
+                    if (at_a * height(o + l * d) <= 0 || at_a * height(o + r * d) <= 0) break;
+                    if (k == 12 && std::min(std::abs(height(o + l * d)), std::abs(height(o + r * d))) >
+                                       (b - a) * glm::length(d))
+                        break;
+                }
+                const double middle = at_a * height(o + l * d) <= 0 ? l : r;
+                if (at_a * height(o + middle * d) > 0) continue;
+                cuts = {a, middle, b};
+            }
+            for (size_t c = 0; c + 1 < cuts.size(); ++c) {
+                double l = cuts[c], r = cuts[c + 1];
+                const double at_l = height(o + l * d);
+                for (int k = 0; k < 60; ++k) {
+                    const double m = 0.5 * (l + r);
+                    (at_l * height(o + m * d) > 0 ? l : r) = m;
+                }
+                found.push_back(0.5 * (l + r));
+            }
+        }
+        return found;
+    }
+    double distance(glm::dvec3 p) const {
+        return height(p) * shape.normal({p.x, p.y, shape.sag(p.x, p.y)}).z;
+    }
+};
 
 inline const std::map<std::string, Oracle>& oracles() {
     using V = glm::dvec3;
     using Ts = std::vector<double>;
+    static const AsphereOracle asphere{{-0.75, -0.5, {0, -0.125, 0, -0.25}}, double(0.8f)};
     static const std::map<std::string, Oracle> table{
         {"triangle",
          {{},
@@ -139,6 +195,12 @@ inline const std::map<std::string, Oracle>& oracles() {
           {{-0.75f, -0.375f, 0}, {0.75f, 0.375f, 0.0625f}},
           false,
           false}},
+        // Bulges towards +z, so that what leaves it on that side does not come back.
+        {"asphere",
+         {{{"curvature", -0.75}, {"conic", -0.5}, {"coefficients", {-0.125, 0, -0.25}}, {"aperture", 0.8}},
+          [](V o, V d) { return asphere.crossings(o, d); },
+          [](V p) { return asphere.distance(p); },
+          {{-0.8f, -0.8f, float(asphere.shape.sag(0.8, 0))}, {0.8f, 0.8f, 0}}}},
     };
     return table;
 }
