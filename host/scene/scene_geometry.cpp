@@ -132,7 +132,15 @@ std::vector<Box> SceneCompiler::shape_bounds(const std::vector<uint32_t>& refs) 
              {{"count", uint32_t(refs.size())}});
     const auto corners = out.read_array<glm::vec3>(2 * refs.size());
     std::vector<Box> boxes;
-    for (size_t i = 0; i < refs.size(); ++i) boxes.push_back({corners[2 * i], corners[2 * i + 1]});
+    for (size_t i = 0; i < refs.size(); ++i) {
+        boxes.push_back({corners[2 * i], corners[2 * i + 1]});
+        const glm::vec3 size = boxes.back().hi - boxes.back().lo;
+        if (!glm::all(glm::lessThan(size, glm::vec3(1e29f)))) {
+            const ObjectDescription& object = in_.shapes[i].object;
+            fail_input("{}: no {} has these parameters together; see: etendue classes {}",
+                       message_place(in_, object.where), object.class_name, object.class_name);
+        }
+    }
     return boxes;
 }
 

@@ -41,10 +41,11 @@ float asphere_slope(Asphere r, float w) {
     return 0.5 * r.curvature / max(asphere_root(r, w), 1e-4) + polynomial;
 }
 
-// Heights of the rim and the vertex, and what the polynomial may add on the way.
+// Heights of the rim and the vertex, and what the polynomial may add on the way. No numbers where the rim is wider than the conic.
 void asphere_bounds(Asphere r, out vec3 lo, out vec3 hi) {
     float w = r.aperture * r.aperture;
     float conic = r.curvature * w / (1.0 + asphere_root(r, w));
+    if ((1.0 + r.conic) * r.curvature * r.curvature * w > 1.000001) conic = INFINITY;
     AsphereCoefficients a = r.coefficients;
     AsphereCoefficients up = AsphereCoefficients(max(a.low, 0.0), max(a.high, 0.0));
     AsphereCoefficients down = AsphereCoefficients(min(a.low, 0.0), min(a.high, 0.0));

@@ -48,6 +48,13 @@ std::string sky_scene(const std::string& more) {
     return scene.replace(scene.rfind(before), before.size(), R"({"class": "sky", )" + more + "}");
 }
 
+// With another shape than a sphere.
+std::string shape_scene(const std::string& shape) {
+    std::string scene = small_scene();
+    const std::string before = R"("class": "sphere", "radius": 1)";
+    return scene.replace(scene.rfind(before), before.size(), shape);
+}
+
 // A lamp over a meter.
 std::string lamp_scene(const std::string& lamp) {
     return R"({"asset": {"version": "2.0"}, "extensionsUsed": ["ETD_optics"], "nodes": [
@@ -106,6 +113,16 @@ TEST_CASE("a bad scene is one line with file, place and what is allowed, and not
          [](Executable& p) {
              write_text(p.folder / "s.glb", std::string("glTF\2\0\0\0\0\1\0\0\x40\0\0\0JSON{\"asset\"", 28));
          }},
+        {"an asphere that is wider than its sphere",
+         {"inspect", "s.gltf"},
+         2,
+         {"s.gltf", "geometry", "asphere"},
+         shape_scene(R"("class": "asphere", "curvature": 2, "aperture": 0.6)")},
+        {"nine coefficients",
+         {"inspect", "s.gltf"},
+         2,
+         {"s.gltf", "/coefficients", "at most 8"},
+         shape_scene(R"("class": "asphere", "aperture": 0.6, "coefficients": [0, 0, 0, 0, 0, 0, 0, 0, 1])")},
         {"an unknown class",
          render,
          2,

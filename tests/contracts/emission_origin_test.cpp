@@ -2,6 +2,7 @@
 // that they leave.
 #include <cmath>
 
+#include "host/lens/surface_shape.h"
 #include "tests/support/emission_probe.h"
 
 using namespace etendue;
@@ -15,6 +16,11 @@ double local_distance(const std::string& name, const glm::dvec3& p, double radiu
         gradient = glm::normalize(p);
         return glm::length(p) - radius;
     }
+    if (name == "asphere") {
+        const SurfaceShape shape{-1, 0.5, {0, -0.2}};
+        gradient = shape.normal({p.x, p.y, shape.sag(p.x, p.y)});
+        return (p.z - shape.sag(p.x, p.y)) * gradient.z;
+    }
     if (name == "cylinder") {
         gradient = glm::normalize(glm::dvec3(p.x, p.y, 0));
         return std::hypot(p.x, p.y) - radius;
@@ -23,10 +29,12 @@ double local_distance(const std::string& name, const glm::dvec3& p, double radiu
     return p.z;  // disk, rectangle
 }
 
-const std::pair<std::string, json> shapes[] = {{"sphere", {{"radius", 0.7}}},
-                                               {"disk", {{"radius", 0.7}}},
-                                               {"rectangle", {{"size", {0.9, 0.3}}}},
-                                               {"cylinder", {{"radius", 0.7}, {"height", 0.4}}}};
+const std::pair<std::string, json> shapes[] = {
+    {"sphere", {{"radius", 0.7}}},
+    {"disk", {{"radius", 0.7}}},
+    {"rectangle", {{"size", {0.9, 0.3}}}},
+    {"cylinder", {{"radius", 0.7}, {"height", 0.4}}},
+    {"asphere", {{"curvature", -1}, {"conic", 0.5}, {"coefficients", {-0.2}}, {"aperture", 0.7}}}};
 
 // Each shape upright and squeezed, 30 m apart; the light of number i is the shape of that number.
 SceneDescription shapes_scene(double far) {

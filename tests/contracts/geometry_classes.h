@@ -68,55 +68,54 @@ struct AsphereOracle {
         return p.z - (r < reach ? shape.sag(p.x, p.y) : shape.sag(reach, 0));
     }
     std::vector<double> crossings(glm::dvec3 o, glm::dvec3 d) const {
+        // Within the cylinder of the rim, and between planes beyond the surface.
+        double low = (d.z > 0 ? -3 - o.z : 3 - o.z) / d.z, high = (d.z > 0 ? 3 - o.z : -3 - o.z) / d.z;
+        if (d.x != 0 || d.y != 0) {
+            const std::vector<double> ends = quadratic(d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y,
+                                                       o.x * o.x + o.y * o.y - aperture * aperture);
+            if (ends.empty()) return {};
+            low = d.z == 0 ? ends[0] : std::max(low, ends[0]),
+            high = d.z == 0 ? ends[1] : std::min(high, ends[1]);
+        } else if (std::hypot(o.x, o.y) > aperture) {
+            return {};
+        }
+        const auto at = [&](double t) { return height(o + t * d); };
         std::vector<double> found;
-        const std::vector<double> ends = quadratic(d.x * d.x + d.y * d.y, o.x * d.x + o.y * d.y,
-                                                   o.x * o.x + o.y * o.y - aperture * aperture);
-        if (ends.empty()) return {};
-        // Rays along z are cut by planes.
-        const double low = std::max(ends[0], (d.z > 0 ? -3 - o.z : 3 - o.z) / d.z),
-                     high = std::min(ends[1], (d.z > 0 ? 3 - o.z : -3 - o.z) / d.z);
-        constexpr int steps = 64;
-        for (int i = 0; i < steps && low < high; ++i) {
-            double a = low + (high - low) * i / steps, b = low + (high - low) * (i + 1) / steps;
-            const double at_a = height(o + a * d);
-            // A pair of crossings within a step: where the height is least.
-            std::vector<double> cuts = {a, b};
-            if (at_a * height(o + b * d) > 0) {
+        const auto solve = [&](double l, double r) {
+            const double side = at(l);
+            for (int k = 0; k < 50; ++k) (side * at(0.5 * (l + r)) > 0 ? l : r) = 0.5 * (l + r);
+            found.push_back(0.5 * (l + r));
+        };
+        constexpr int steps = 32;
+        double a = low, at_a = at(a);
+        for (int i = 1; i <= steps && low < high; ++i) {
+            const double b = low + (high - low) * i / steps, at_b = at(b);
+            if (at_a * at_b <= 0) {
+                solve(a, b);
+            } else if (std::min(std::abs(at_a), std::abs(at_b)) < 3 * (b - a) * glm::length(d)) {
+                // A pair of crossings within a step: about where the height is least, by thirds.
                 double l = a, r = b;
-                for (int k = 0; k < 60; ++k) {  // golden section
-                    const double m = r - 0.618033988749895 * (r - l), n = l + 0.618033988749895 * (r - l);
-                    (std::abs(height(o + m * d)) < std::abs(height(o + n * d)) ? r : l) =
-                        std::abs(height(o + m * d)) < std::abs(height(o + n * d)) ? n : m;
-                    if (at_a * height(o + l * d) <= 0 || at_a * height(o + r * d) <= 0) break;
-                    if (k == 12 && std::min(std::abs(height(o + l * d)), std::abs(height(o + r * d))) >
-                                       (b - a) * glm::length(d))
+                for (int k = 0; k < 40; ++k) {
+                    const double m = l + (r - l) / 3, n = r - (r - l) / 3, at_m = at(m), at_n = at(n);
+                    if (std::min(at_m * at_a, at_n * at_a) <= 0) {
+                        const double middle = at_m * at_a <= 0 ? m : n;
+                        solve(a, middle), solve(middle, b);
                         break;
+                    }
+                    (std::abs(at_m) < std::abs(at_n) ? r : l) = std::abs(at_m) < std::abs(at_n) ? n : m;
                 }
-                const double middle = at_a * height(o + l * d) <= 0 ? l : r;
-                if (at_a * height(o + middle * d) > 0) continue;
-                cuts = {a, middle, b};
             }
-            for (size_t c = 0; c + 1 < cuts.size(); ++c) {
-                double l = cuts[c], r = cuts[c + 1];
-                const double at_l = height(o + l * d);
-                for (int k = 0; k < 60; ++k) {
-                    const double m = 0.5 * (l + r);
-                    (at_l * height(o + m * d) > 0 ? l : r) = m;
-                }
-                found.push_back(0.5 * (l + r));
-            }
+            a = b, at_a = at_b;
         }
         return found;
     }
-    double distance(glm::dvec3 p) const {
-        return height(p) * shape.normal({p.x, p.y, shape.sag(p.x, p.y)}).z;
-    }
+    double distance(glm::dvec3 p) const { return height(p) * shape.normal(p).z; }
 };
 
 inline const std::map<std::string, Oracle>& oracles() {
     using V = glm::dvec3;
     using Ts = std::vector<double>;
-    static const AsphereOracle asphere{{-0.75, -0.5, {0, -0.125, 0, -0.25}}, double(0.8f)};
+    static const AsphereOracle asphere{{-0.25, -0.5, {0, -0.1, 0, -0.3}}, double(0.8f)};
     static const std::map<std::string, Oracle> table{
         {"triangle",
          {{},
@@ -197,7 +196,7 @@ inline const std::map<std::string, Oracle>& oracles() {
           false}},
         // Bulges towards +z, so that what leaves it on that side does not come back.
         {"asphere",
-         {{{"curvature", -0.75}, {"conic", -0.5}, {"coefficients", {-0.125, 0, -0.25}}, {"aperture", 0.8}},
+         {{{"curvature", -0.25}, {"conic", -0.5}, {"coefficients", {-0.1, 0, -0.3}}, {"aperture", 0.8}},
           [](V o, V d) { return asphere.crossings(o, d); },
           [](V p) { return asphere.distance(p); },
           {{-0.8f, -0.8f, float(asphere.shape.sag(0.8, 0))}, {0.8f, 0.8f, 0}}}},
@@ -277,7 +276,9 @@ inline const char* const measure_kernel = R"(
 // One object of a class, asked through the interface.
 class ClassProbe {
   public:
-    explicit ClassProbe(const std::string& name) : registry_(test_sources()), sources_(test_sources()) {
+    explicit ClassProbe(const std::string& name) : ClassProbe(name, oracles().at(name).parameters) {}
+    ClassProbe(const std::string& name, const nlohmann::json& parameters)
+        : registry_(test_sources()), sources_(test_sources()) {
         const ClassInfo* info = registry_.find(Interface::geometry, name);
         REQUIRE(info);
         const InterfaceInfo& interface = interface_info(Interface::geometry);
@@ -288,8 +289,7 @@ class ClassProbe {
             std::memcpy(record.data(), &triangle, sizeof triangle);
         } else {
             const SceneDescription scene;
-            record = fill_record(*info, {name, oracles().at(name).parameters, "/geometry"}, {},
-                                 {scene, {}, {}, {}});
+            record = fill_record(*info, {name, parameters, "/geometry"}, {}, {scene, {}, {}, {}});
         }
         RecordBuffer records;
         records.add(*info, record);
