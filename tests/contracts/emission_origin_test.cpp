@@ -36,7 +36,9 @@ const std::pair<std::string, json> shapes[] = {
     {"cylinder", {{"radius", 0.7}, {"height", 0.4}}},
     {"asphere", {{"curvature", -1}, {"conic", 0.5}, {"coefficients", {-0.2}}, {"aperture", 0.7}}}};
 
-// Each shape upright and squeezed, 30 m apart; the light of number i is the shape of that number.
+constexpr uint32_t shape_count = std::size(shapes), light_count = 4 * shape_count;
+
+// Each shape upright and squeezed, 30 m apart.
 SceneDescription shapes_scene(double far) {
     SceneDescription scene;
     scene.materials.resize(1);
@@ -50,7 +52,7 @@ SceneDescription shapes_scene(double far) {
                 shape.object = {name, parameters, "/shape"};
                 if (squeezed)
                     shape.world_from_local = {{0.9, 0.2, 0, 0}, {0, -0.7, 0.3, 0}, {0.1, 0, -1.2, 0}, {}};
-                const double along = 30.0 * double(scene.shapes.size() % 8);
+                const double along = 30.0 * double(scene.shapes.size() % (light_count / 2));
                 shape.world_from_local[3] = {side * far, 0.6 * side * far + along, -0.3 * side * far, 1};
                 scene.shapes.push_back(shape);
             }
@@ -62,28 +64,32 @@ SceneDescription shapes_scene(double far) {
 TEST_CASE("emission: origins lie within their error of the surface, and rays do not meet what they leave") {
     for (double far : {20.0, 5000.0}) {
         EmissionProbe probe(shapes_scene(far));
-        REQUIRE(probe.scene().lights == 16);
+        REQUIRE(probe.scene().lights == light_count);
         const auto transforms =
-            probe.scene().shared_buffers.at("Transforms")->read_array<TransformRecord>(16);
-        double worst[16] = {};
-        uint32_t met = 0, i = 0;
+            probe.scene().shared_buffers.at("Transforms")->read_array<TransformRecord>(light_count);
+        double worst[light_count] = {};
+        uint32_t met = 0;
         for (const ProbedRay& r : probe.emit(1 << 18, 4)) {
-            const uint32_t light = i++ % 16;
+            uint32_t light = 0;  // the shape that is nearest
+            for (uint32_t k = 1; k < light_count; ++k)
+                if (glm::distance(transforms[k].world_from_local[3], r.origin) <
+                    glm::distance(transforms[light].world_from_local[3], r.origin))
+                    light = k;
             glm::dmat4 world(1);
             for (int k = 0; k < 4; ++k)
                 world[k] = glm::dvec4(glm::dvec3(transforms[light].world_from_local[k]), k == 3);
             const glm::dmat4 local = glm::inverse(world);
             glm::dvec3 gradient;
             const glm::dvec3 p(local * glm::dvec4(glm::dvec3(r.origin), 1));
-            const double d = local_distance(shapes[light / 2 % 4].first, p, 0.7f, gradient);
+            const double d = local_distance(shapes[light / 2 % shape_count].first, p, 0.7f, gradient);
             const double distance = std::abs(d) / glm::length(gradient * glm::dmat3(local));
             const double bound = glm::dot(glm::abs(glm::dvec3(r.normal)), glm::dvec3(r.error));
             worst[light] = std::max(worst[light], bound > 0 ? distance / bound : 2.0);
             met += r.t_hit < 5;
         }
         CHECK(met == 0);
-        for (uint32_t light = 0; light < 16; ++light) {
-            INFO(shapes[light / 2 % 4].first, ", ", far, " m away",
+        for (uint32_t light = 0; light < light_count; ++light) {
+            INFO(shapes[light / 2 % shape_count].first, ", ", far, " m away",
                  std::string(light % 2 ? ", squeezed" : ""));
             CHECK(worst[light] <= 1);
             // Not wide beyond use, either; upright planes are met exactly.
