@@ -88,7 +88,6 @@ struct Prescription {
     std::vector<std::string> warnings;        // what was left out
 
     double primary_nm() const { return wavelengths[primary].nm; }
-    const LensSurface& image() const { return surfaces.back(); }
     // The medium before a surface.
     const Glass& glass_before(size_t surface) const {
         return surface == 0 ? object_glass : surfaces[surface - 1].glass;
