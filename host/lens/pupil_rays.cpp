@@ -129,7 +129,8 @@ void set_missing_semi_diameters(Prescription& p) {
         }
     }
     for (size_t s = 0; s < p.surfaces.size(); ++s)
-        if (LensAperture& a = p.surfaces[s].aperture; std::isinf(a.extent()) && needed[s] > 0 && !p.surfaces[s].frame_change)
+        if (LensAperture& a = p.surfaces[s].aperture;
+            std::isinf(a.extent()) && needed[s] > 0 && !p.surfaces[s].frame_change)
             a.semi_diameter = needed[s];
 }
 

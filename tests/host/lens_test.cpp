@@ -197,7 +197,7 @@ TEST_CASE("lines meet surfaces on the sheet of the vertex") {
     }
     SUBCASE("what misses, misses") {
         CHECK(std::isnan(meet({0.1, 0}, {0, 11, -5}, {0, 0, 1}).z));
-        CHECK(std::isnan(meet({0.1, 0}, {-20, 0, 15}, {1, 0, 0}).z));     // beyond the equator
+        CHECK(std::isnan(meet({0.1, 0}, {-20, 0, 15}, {1, 0, 0}).z));    // beyond the equator
         CHECK(std::isnan(meet({-0.1, -10}, {-20, 0, 5}, {1, 0, 0}).z));  // the other sheet alone
         CHECK(std::isnan(meet({0.1, 0, {0, 1e-5}}, {0, 11, -5}, {0, 0, 1}).z));
     }
