@@ -48,7 +48,9 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             table = Path(folder) / "rays.csv"
             subprocess.run([ETENDUE, "lens", file, "-o", table, "--rays", str(a.rays)], check=True, capture_output=True)
-            worker = [peers.environment_for("rayoptics"), ROOT / "tools" / "peers" / "rayoptics_worker.py", file, table]
+            copy = Path(folder) / file.name  # ray-optics writes a file beside it where it lacks a glass
+            copy.write_bytes(file.read_bytes())
+            worker = [peers.environment_for("rayoptics"), ROOT / "tools" / "peers" / "rayoptics_worker.py", copy, table]
             done = subprocess.run(list(map(str, worker)), capture_output=True, text=True)
             line = (done.stdout.strip().splitlines() or [""])[-1]
             if done.returncode != 0:
