@@ -62,7 +62,7 @@ struct MeasureOptions : SceneChoice {
     uint64_t vertex_bytes = uint64_t(256) << 20;
     uint64_t seed = 0;
     std::vector<glm::dvec2> points;  // of meters, for uniformity, in parts of width and height; empty = none
-    std::optional<double> glare_from;  // cd/m²: what is brighter counts for UGR
+    std::optional<double> glare_from;          // cd/m²: what is brighter counts for UGR
     std::filesystem::path checkpoint, resume;  // empty = none
     bool quiet = false;
     std::string command_line;

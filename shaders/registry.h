@@ -1,10 +1,10 @@
 // Every class of scene object: X(tag, Struct, name), one table per interface.
 //
-// The class stands in one file, FOLDER/name.glsl, with its record `Struct` and functions `name_…`. Where another interface has
-// a class of that name the row says INTERFACE_name, and so do the functions; file and scenes keep the name. A tag is
-// written into RecordRefs and never renumbered. Tags 128 to 254 are for classes that a scene brings along.
-// The host reads this file as text; shaders see only the classes that a scene uses (see generated headers in
-// host/scene/features.h).
+// The class stands in one file, FOLDER/name.glsl, with its record `Struct` and functions `name_…`. Where
+// another interface has a class of that name the row says INTERFACE_name, and so do the functions; file and
+// scenes keep the name. A tag is written into RecordRefs and never renumbered. Tags 128 to 254 are for
+// classes that a scene brings along. The host reads this file as text; shaders see only the classes that a
+// scene uses (see generated headers in host/scene/features.h).
 
 // folder geometry/, contract interfaces/geometry.glsl
 #define GEOMETRY_CLASSES(X)    \

@@ -201,7 +201,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
 
-    const auto commands = {render, measure, merge, view, rays, compare, bench, inspect, lens, classes, devices};
+    const auto commands = {render, measure, merge, view,    rays,   compare,
+                           bench,  inspect, lens,  classes, devices};
     std::string first = argc < 2 ? "" : argv[1];
     bool known = first.starts_with("-");
     for (CLI::App* command : commands) known = known || first == command->get_name();

@@ -11,8 +11,9 @@ struct DevicesOptions {};
 struct TextAnswer {  // --help and --version
     std::string text;
 };
-using CommandLine = std::variant<TextAnswer, RenderOptions, MeasureOptions, MergeOptions, CompareOptions, BenchOptions, ViewOptions,
-                                 RaysOptions, InspectOptions, LensOptions, ClassesOptions, DevicesOptions>;
+using CommandLine =
+    std::variant<TextAnswer, RenderOptions, MeasureOptions, MergeOptions, CompareOptions, BenchOptions,
+                 ViewOptions, RaysOptions, InspectOptions, LensOptions, ClassesOptions, DevicesOptions>;
 
 // Fails with one line (exit code 2) where the arguments are wrong.
 CommandLine parse_command_line(int argc, const char* const* argv);

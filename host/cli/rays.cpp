@@ -30,10 +30,10 @@ CLI::App* add_rays(CLI::App& app, RaysOptions& options, RaysArguments& arguments
     rays->add_option("--paths", arguments.paths, "How many are traced (default: 1000)")->option_text("N");
     rays->add_option("--from", arguments.from, "Where they start (default: lights)")
         ->option_text("lights|receiver");
-    rays->add_option(
-            "--events", arguments.events,
-            "Keep paths with one of: emitted, reflected, refracted, straight, scattered, entered, left, bent, "
-            "absorbed, escaped")
+    rays->add_option("--events", arguments.events,
+                     "Keep paths with one of: emitted, reflected, refracted, straight, scattered, entered, "
+                     "left, bent, "
+                     "absorbed, escaped")
         ->option_text("E,…");
     rays->add_option("--objects", arguments.objects,
                      "Keep paths with an event at one of these: shapes, nodes, materials, media, lights")

@@ -30,8 +30,10 @@ Placing::Placing(const SceneDescription& scene, const std::vector<Box>& shape_bo
         if (held.boundary.empty())
             held.boundary = content.boundary.empty() ? box_around(held.extent) : mesh_boundary(content);
         if (held.boundary.empty())
-            fail_input("{}: the element holds nothing that has an extent; allowed: a scene with geometry, or a "
-                       "boundary that is a mesh", message_place(scene, element.where));
+            fail_input(
+                "{}: the element holds nothing that has an extent; allowed: a scene with geometry, or a "
+                "boundary that is a mesh",
+                message_place(scene, element.where));
         Held& parent = held_[element.parent == 0 ? 0 : scene.elements[element.parent - 1].content + 1];
         parent.elements.push_back(i);
         for (const Corners& triangle : held.boundary)
@@ -49,7 +51,8 @@ glm::dvec3 Placing::center() const {
 std::vector<Placing::Corners> Placing::box_around(const Extent& extent) {
     if (extent.empty()) return {};
     const glm::dvec3 size = extent.hi - extent.lo, far = glm::max(glm::abs(extent.lo), glm::abs(extent.hi));
-    const glm::dvec3 margin(1e-5 * std::max({size.x, size.y, size.z}) + 1e-6 * std::max({far.x, far.y, far.z}));
+    const glm::dvec3 margin(1e-5 * std::max({size.x, size.y, size.z}) +
+                            1e-6 * std::max({far.x, far.y, far.z}));
     const glm::dvec3 corner[2] = {extent.lo - margin, extent.hi + margin};
     std::vector<Corners> triangles;
     for (int axis = 0; axis < 3; ++axis)
@@ -76,15 +79,16 @@ std::vector<Placing::Corners> Placing::mesh_boundary(const ElementContent& conte
         const bool is_mirrored = glm::determinant(glm::dmat3(m)) < 0;
         for (glm::uvec3 t : mesh.triangles) {
             if (is_mirrored) std::swap(t.y, t.z);
-            triangles.push_back({m * glm::dvec4(mesh.positions[t.x], 1), m * glm::dvec4(mesh.positions[t.y], 1),
+            triangles.push_back({m * glm::dvec4(mesh.positions[t.x], 1),
+                                 m * glm::dvec4(mesh.positions[t.y], 1),
                                  m * glm::dvec4(mesh.positions[t.z], 1)});
         }
     }
     return triangles;
 }
 
-void Placing::add_boundaries(uint32_t content, const glm::dmat4& recentre, std::vector<PrimitiveRecord>& primitives,
-                             std::vector<uint32_t>& placed) const {
+void Placing::add_boundaries(uint32_t content, const glm::dmat4& recentre,
+                             std::vector<PrimitiveRecord>& primitives, std::vector<uint32_t>& placed) const {
     const auto add = [&](const std::vector<Corners>& triangles, const glm::dmat4& to_frame, uint32_t leads_to,
                          uint32_t element) {
         for (const Corners& triangle : triangles) {
@@ -100,7 +104,8 @@ void Placing::add_boundaries(uint32_t content, const glm::dmat4& recentre, std::
         }
     };
     for (const uint32_t i : held_[content].elements)
-        add(held_[scene_.elements[i].content + 1].boundary, recentre * scene_.elements[i].parent_from_local, i + 1, i);
+        add(held_[scene_.elements[i].content + 1].boundary, recentre * scene_.elements[i].parent_from_local,
+            i + 1, i);
     if (content == 0) return;
     const auto first = std::ranges::find(scene_.elements, content - 1, &PlacedElement::content);
     add(held_[content].boundary, recentre, 0, uint32_t(first - scene_.elements.begin()));

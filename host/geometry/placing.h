@@ -1,4 +1,5 @@
-// Where the scene and the contents of its optical elements have their objects, and the boundaries of elements.
+// Where the scene and the contents of its optical elements have their objects, and the boundaries of
+// elements.
 #pragma once
 #include <array>
 #include <vector>
@@ -8,7 +9,8 @@
 namespace etendue {
 
 inline glm::dvec3 corner_of(const Box& box, int corner) {
-    return {corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y, corner & 4 ? box.hi.z : box.lo.z};
+    return {corner & 1 ? box.hi.x : box.lo.x, corner & 2 ? box.hi.y : box.lo.y,
+            corner & 4 ? box.hi.z : box.lo.z};
 }
 
 class Placing {
@@ -23,8 +25,8 @@ class Placing {
 
     glm::dvec3 center() const;  // of everything that is placed in the scene
     // Appends the boundaries that rays meet in a content: its own, and those of the elements in it.
-    void add_boundaries(uint32_t content, const glm::dmat4& recentre, std::vector<PrimitiveRecord>& primitives,
-                        std::vector<uint32_t>& placed) const;
+    void add_boundaries(uint32_t content, const glm::dmat4& recentre,
+                        std::vector<PrimitiveRecord>& primitives, std::vector<uint32_t>& placed) const;
 
   private:
     using Corners = std::array<glm::dvec3, 3>;

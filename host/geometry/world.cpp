@@ -28,7 +28,8 @@ glm::vec3 transform_point(const glm::dmat4& m, const glm::vec3& p) {
 }
 
 void grow_transformed(Box& box, const glm::dmat4& m, const Box& local) {
-    for (int corner = 0; corner < 8; ++corner) box.grow(glm::vec3(m * glm::dvec4(corner_of(local, corner), 1)));
+    for (int corner = 0; corner < 8; ++corner)
+        box.grow(glm::vec3(m * glm::dvec4(corner_of(local, corner), 1)));
 }
 
 // Outward by a rounding step, so that float boxes hold what the doubles say.
@@ -111,8 +112,8 @@ class Builder {
         world_.triangles += mesh.triangles.size();
     }
 
-    // A tree over `primitives`, which are appended to the world's in leaf order, `order`, and twins behind them.
-    // Returns the tree's header.
+    // A tree over `primitives`, which are appended to the world's in leaf order, `order`, and twins behind
+    // them. Returns the tree's header.
     uint32_t add_tree(const std::vector<PrimitiveRecord>& primitives, std::vector<Box> boxes,
                       std::vector<uint32_t>* order = nullptr) {
         const std::vector<uint32_t> twins = find_twins(primitives, scene_.materials);
@@ -244,7 +245,8 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
             placed.push_back(uint32_t(scene.instances.size() + i));
             features.shapes = true;
         }
-        // Instances point to the header of their mesh's tree, which is built behind the world's: patched below.
+        // Instances point to the header of their mesh's tree, which is built behind the world's: patched
+        // below.
         for (const uint32_t i : placing.instances(content)) {
             const MeshInstance& instance = scene.instances[i];
             if (!merged(instance.mesh) && !local_bounds[instance.mesh].empty()) {

@@ -42,14 +42,14 @@ struct World {
     // Leaf order, one tree behind the other: that of the scene, those of the contents of elements, those of
     // instanced meshes.
     std::vector<PrimitiveRecord> primitives;
-    uint32_t world_primitives = 0;     // all but those of instanced meshes
-    std::vector<uint32_t> headers;     // of the trees of the scene and of the contents, in `nodes`
-    std::vector<uint32_t> contents;    // of each world primitive: 0 = the scene, i = content i - 1
+    uint32_t world_primitives = 0;   // all but those of instanced meshes
+    std::vector<uint32_t> headers;   // of the trees of the scene and of the contents, in `nodes`
+    std::vector<uint32_t> contents;  // of each world primitive: 0 = the scene, i = content i - 1
     // Of the world's primitives: what they are of, counted through the scene's instances, its shapes, and the
     // elements whose boundaries they are (of a content's own boundary the first that holds it).
     std::shared_ptr<const std::vector<uint32_t>> placed;
     std::vector<uint32_t> sources;  // of the same: their places in the order of scene and meshes
-    std::vector<uint32_t> twins;  // of each primitive: the other side of its sheet (twins.h), or no_record
+    std::vector<uint32_t> twins;    // of each primitive: the other side of its sheet (twins.h), or no_record
     std::vector<glm::uvec4> nodes;
     std::vector<TransformRecord> transforms;
     std::vector<VertexRecord> vertices;

@@ -34,8 +34,10 @@ void check_closed(const JsonAt& at, const GltfImport& import, const std::vector<
     }
     for (const auto& [edge, balance] : edges)
         if (balance != 0)
-            fail_at(at, "is not closed: there is a hole, or a triangle turned round, at ({:g}, {:g}, {:g}); "
-                        "allowed: a closed mesh", std::get<0>(edge.first), std::get<1>(edge.first), std::get<2>(edge.first));
+            fail_at(at,
+                    "is not closed: there is a hole, or a triangle turned round, at ({:g}, {:g}, {:g}); "
+                    "allowed: a closed mesh",
+                    std::get<0>(edge.first), std::get<1>(edge.first), std::get<2>(edge.first));
     if (!(volume > 0)) fail_at(at, "faces inward; allowed: a closed mesh that faces outward");
 }
 
@@ -62,15 +64,18 @@ void check_holds_not_itself(const GltfImport& import, uint32_t element, uint32_t
     if (!scene) return;
     for (uint32_t i = import.scene.elements[element].parent;; i = import.scene.elements[i - 1].parent) {
         if (*scene == (i == 0 ? root_scene : import.elements[i - 1].scene))
-            fail_at(member(import.elements[element].at, "scene"), "scene {} holds itself; allowed: another scene", *scene);
+            fail_at(member(import.elements[element].at, "scene"),
+                    "scene {} holds itself; allowed: another scene", *scene);
         if (i == 0) return;
     }
 }
 
 // The only object of an element of class microstructure, within a box that it fills from side to side.
 void place_microstructure(GltfImport& import, const JsonAt& at) {
-    if (find(at, "cell")) fail_at(member(at, "cell"), "cells hold no scenes in this version; allowed: a shape");
-    PlacedObject sheet{"microstructure", {"microstructure", nlohmann::json::object(), at.pointer}, import.content_root};
+    if (find(at, "cell"))
+        fail_at(member(at, "cell"), "cells hold no scenes in this version; allowed: a shape");
+    PlacedObject sheet{
+        "microstructure", {"microstructure", nlohmann::json::object(), at.pointer}, import.content_root};
     for (const auto& [key, value] : at->items())
         if (key != "class" && key != "material" && key != "density" && key != "scale" && key != "thickness")
             sheet.object.parameters[key] = value;
@@ -88,7 +93,8 @@ void place_microstructure(GltfImport& import, const JsonAt& at) {
 
     const std::vector<double> size = number_array(member(at, "size"), 2, 0, max_coordinate);
     const bool is_dent = text(at, "operation", "add") == "remove";
-    const double thickness = number(at, "thickness", 1.01 * depth, depth, max_coordinate), beyond = 0.01 * depth;
+    const double thickness = number(at, "thickness", 1.01 * depth, depth, max_coordinate),
+                 beyond = 0.01 * depth;
     const glm::vec3 half(0.5 * size[0], 0.5 * size[1], 0);
     const float lo = float(is_dent ? -thickness : -beyond), hi = float(is_dent ? beyond : thickness);
     MeshDescription box;
@@ -97,7 +103,10 @@ void place_microstructure(GltfImport& import, const JsonAt& at) {
         box.positions.push_back({i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? hi : lo});
     box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    import.scene.contents.back().boundary = {{uint32_t(import.scene.meshes.size()), import.content_root, at.pointer}};
+    import.scene.contents.back().boundary = {
+        { uint32_t(import.scene.meshes.size()),
+          import.content_root,
+          at.pointer }};
     import.mesh_bounds.push_back({glm::dvec3(-half.x, -half.y, lo), glm::dvec3(half.x, half.y, hi)});
     import.scene.meshes.push_back(std::move(box));
 }
@@ -105,8 +114,8 @@ void place_microstructure(GltfImport& import, const JsonAt& at) {
 // What an element holds, as a new content.
 void place_content(GltfImport& import, uint32_t element) {
     SceneDescription& scene = import.scene;
-    const size_t instances = scene.instances.size(), shapes = scene.shapes.size(), lights = scene.lights.size(),
-                 receivers = scene.receivers.size();
+    const size_t instances = scene.instances.size(), shapes = scene.shapes.size(),
+                 lights = scene.lights.size(), receivers = scene.receivers.size();
     const JsonAt at = import.elements[element].at;
     import.content_root = glm::dmat4(import.elements[element].scale);
     import.holder = element + 1;
@@ -142,9 +151,11 @@ void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
                   const glm::dmat4& parent_from_local) {
     const JsonAt class_at = member(at, "class");
     const bool holds_scene = text_value(class_at) == "subscene";
-    if (holds_scene) only_members(at, {"class", "scene", "boundary"});
+    if (holds_scene)
+        only_members(at, {"class", "scene", "boundary"});
     else if (text_value(class_at) != "microstructure")
-        fail_at(class_at, "there is no element class '{}'; allowed: subscene, microstructure", text_value(class_at));
+        fail_at(class_at, "there is no element class '{}'; allowed: subscene, microstructure",
+                text_value(class_at));
     if (import.scene.elements.size() == max_elements)
         fail_at(at, "the scene has more than {} elements", max_elements);
     const Parts parts = parted(glm::dmat3(parent_from_local));

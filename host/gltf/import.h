@@ -105,18 +105,19 @@ struct GltfImport {
     std::vector<BufferView> views;
     std::vector<Accessor> accessors;
 
-    std::vector<NodePose> poses;         // per glTF node
-    std::vector<uint32_t> parents;       // per glTF node, UINT32_MAX for roots
-    std::vector<glm::dmat4> worlds;      // per glTF node, world_from_local; filled for the first skin
-    size_t deformed_vertices = 0;        // of meshes that are made for a node alone
-    std::optional<uint32_t> variant;     // of materials, that is wanted
-    glm::dmat4 content_root{1.0};        // of the nodes that are being placed: of elements what scales their contents
-    uint32_t holder = 0;                 // of them: 0 = the scene, i = element i - 1
-    std::vector<ElementImport> elements; // that stand in the file, in the order of scene.elements
-    std::vector<MeshRange> mesh_ranges;  // per glTF mesh, read when a node first uses it undeformed
-    std::vector<Bounds> mesh_bounds;     // per SceneDescription::meshes
-    std::vector<uint32_t> image_of;      // glTF image -> SceneDescription::images; UINT32_MAX = unused
-    std::vector<uint32_t> texture_of;    // glTF texture -> SceneDescription::textures; UINT32_MAX = unused
+    std::vector<NodePose> poses;      // per glTF node
+    std::vector<uint32_t> parents;    // per glTF node, UINT32_MAX for roots
+    std::vector<glm::dmat4> worlds;   // per glTF node, world_from_local; filled for the first skin
+    size_t deformed_vertices = 0;     // of meshes that are made for a node alone
+    std::optional<uint32_t> variant;  // of materials, that is wanted
+    glm::dmat4 content_root{
+        1.0};             // of the nodes that are being placed: of elements what scales their contents
+    uint32_t holder = 0;  // of them: 0 = the scene, i = element i - 1
+    std::vector<ElementImport> elements;  // that stand in the file, in the order of scene.elements
+    std::vector<MeshRange> mesh_ranges;   // per glTF mesh, read when a node first uses it undeformed
+    std::vector<Bounds> mesh_bounds;      // per SceneDescription::meshes
+    std::vector<uint32_t> image_of;       // glTF image -> SceneDescription::images; UINT32_MAX = unused
+    std::vector<uint32_t> texture_of;     // glTF texture -> SceneDescription::textures; UINT32_MAX = unused
     std::vector<uint32_t>
         images_to_decode;  // glTF image of each of SceneDescription::images; UINT32_MAX = made
     std::map<uint32_t, ImageMaker> images_to_make;  // index into SceneDescription::images
@@ -222,12 +223,13 @@ void skin(GltfImport& import, const JsonAt& attributes, size_t vertex_count, Ver
           const Deformation& deformation, MeshDescription& mesh);
 
 // elements.cpp
-void read_element(GltfImport& import, const JsonAt& at, const std::string& name, const glm::dmat4& parent_from_local);
+void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
+                  const glm::dmat4& parent_from_local);
 void load_elements(GltfImport& import, uint32_t root_scene);  // what they hold
 
 // nodes.cpp
 void load_nodes(GltfImport& import);
-void place_nodes(GltfImport& import, uint32_t scene);  // of the file, below content_root
+void place_nodes(GltfImport& import, uint32_t scene);                 // of the file, below content_root
 glm::dmat4 local_transform(const GltfImport& import, uint32_t node);  // as posed
 // No axis of the local frame vanishes or lies in the plane of the other two.
 bool is_invertible(const glm::dmat4& matrix);

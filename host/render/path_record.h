@@ -38,9 +38,9 @@ struct PathVertex {
     bool smooth = false;     // reflected or refracted in one direction only
     bool roulette = false;   // Russian roulette or the depth limit ended the path here
     glm::dvec3 position{0};  // m, in the coordinates of the scene file
-    std::string object;  // name of the material, of the medium where it scattered, of the light it came from, of the
-                         // element
-    std::string shape;   // name of the shape or of the mesh's node; empty where there is none
+    std::string object;  // name of the material, of the medium where it scattered, of the light it came from,
+                         // of the element
+    std::string shape;  // name of the shape or of the mesh's node; empty where there is none
     // What the path carries when it arrives and when it goes on. Forward: lm. Backward: the share of a
     // radiance along the ray that reaches the pixel.
     double arriving = 0, leaving = 0;

@@ -334,8 +334,8 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
                     info->prefix);
             if (!info->records_rays) text += fmt::format("#define {}_RECORDS_RAYS 0\n", info->prefix);
             if (!info->has_receptor)
-                text +=
-                    fmt::format("#define {}_receptor(r, origin, direction) no_receptor_hit()\n", info->prefix);
+                text += fmt::format("#define {}_receptor(r, origin, direction) no_receptor_hit()\n",
+                                    info->prefix);
             if (!info->is_far)
                 text += fmt::format("#define {}_far(r, direction, film_aspect) no_receiver_sample()\n",
                                     info->prefix);

@@ -81,26 +81,27 @@ struct PlacedObject {
     std::string name;
     ObjectDescription object;
     glm::dmat4 world_from_local{1.0};
-    uint32_t material = 0;      // geometry only
-    bool wants_stokes = false;  // receivers: S1 to S3 are wanted, too
-    glm::dvec3 stokes{0};       // lights: S1 to S3 over S0, x being the node's
+    uint32_t material = 0;               // geometry only
+    bool wants_stokes = false;           // receivers: S1 to S3 are wanted, too
+    glm::dvec3 stokes{0};                // lights: S1 to S3 over S0, x being the node's
     std::optional<uint32_t> shape = {};  // lights: index of the geometry at the same node
     uint32_t content = 0;
 };
 
-// What an optical element holds, in its frame: the objects that name it as their content, within a closed boundary. Several
-// elements may hold the same, unless it has lights, receivers or elements.
+// What an optical element holds, in its frame: the objects that name it as their content, within a closed
+// boundary. Several elements may hold the same, unless it has lights, receivers or elements.
 struct ElementContent {
-    std::vector<MeshInstance> boundary;  // in its frame, facing outward; none = a box around all that it holds
+    std::vector<MeshInstance>
+        boundary;  // in its frame, facing outward; none = a box around all that it holds
     std::string where;
 };
 
 // An optical element: a black box of which the scene, or the element that holds it, knows only the boundary.
 struct PlacedElement {
     std::string name, where;
-    uint32_t content = 0;                // index into SceneObjects::contents
-    uint32_t parent = 0;                 // 0 = the scene, i = element i - 1, which stands before this one
-    glm::dmat4 parent_from_local{1.0};   // turned and moved, not scaled
+    uint32_t content = 0;               // index into SceneObjects::contents
+    uint32_t parent = 0;                // 0 = the scene, i = element i - 1, which stands before this one
+    glm::dmat4 parent_from_local{1.0};  // turned and moved, not scaled
 };
 
 // 8-bit images keep their bytes; float images (.hdr, .exr) are linear.

@@ -34,11 +34,11 @@ struct Features {
     bool polarized_lights = false;  // some light is polarized from the start
     bool body_mueller = false;      // a class polarizes what its body sends out
     bool general_mueller =
-        false;                   // a class has matrices that are not of two blocks (shaders/lib/stokes.glsl)
-    bool crystals = false;       // some medium refracts doubly
-    bool apertures = false;      // some receiver draws its rays from many (shaders/interfaces/receiver.glsl)
-    bool far_receivers = false;  // … is far away
-    bool surface_meters = false;   // … lies on the surface of a mesh
+        false;                    // a class has matrices that are not of two blocks (shaders/lib/stokes.glsl)
+    bool crystals = false;        // some medium refracts doubly
+    bool apertures = false;       // some receiver draws its rays from many (shaders/interfaces/receiver.glsl)
+    bool far_receivers = false;   // … is far away
+    bool surface_meters = false;  // … lies on the surface of a mesh
     bool receptor_shapes = false;  // … is no plane (shaders/features/receptor_shapes.glsl)
     bool receptors = false;        // … has a receptor, which is made of this material:
     uint32_t receptor_material = 0;
@@ -46,10 +46,10 @@ struct Features {
     uint32_t spectrum_count = 0;       // room for so many
     bool independent_samples = false;  // hashes take the place of Sobol' points
     bool light_tree = false;
-    uint32_t spectral_bins = 0;    // of a spectral image; set by the renderer
-    uint32_t texture_formats = 7;  // of features/textures.glsl, a bit each
-    uint32_t bvh_stack_size = 64;  // references that a traversal can hold back
-    uint32_t light_count = 0;      // finite and infinite lights
+    uint32_t spectral_bins = 0;      // of a spectral image; set by the renderer
+    uint32_t texture_formats = 7;    // of features/textures.glsl, a bit each
+    uint32_t bvh_stack_size = 64;    // references that a traversal can hold back
+    uint32_t light_count = 0;        // finite and infinite lights
     uint32_t scene_light_count = 0;  // … those within no element
     uint32_t infinite_light_count = 0;
     float scene_radius = 0;  // m, of a sphere around all geometry

@@ -160,8 +160,8 @@ class SceneCompiler {
     std::vector<LightStokes> light_stokes_;                        // … as well
     uint32_t first_area_light_ = 0;                                // in lights_, before they are sorted
     std::vector<uint32_t> area_primitives_;                        // of each area light
-    bool is_within_element_ = false;  // what is being added
-    std::vector<uint32_t> light_elements_;  // of the sorted lights: that they are in
+    bool is_within_element_ = false;                               // what is being added
+    std::vector<uint32_t> light_elements_;                         // of the sorted lights: that they are in
     uint32_t opening_ = no_record;                                 // primitive of the light being added
     std::vector<uint32_t> opening_lights_;                         // … of each placed light
 };

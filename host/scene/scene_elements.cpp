@@ -26,7 +26,8 @@ bool SceneCompiler::fills_elements(const MediumDescription& medium) const {
     bool in_scene = false, in_element = false;
     const auto look = [&](uint32_t material, uint32_t content) {
         const MaterialDescription& m = in_.materials[material];
-        if (m.inside == medium.name || m.outside == medium.name) (content == 0 ? in_scene : in_element) = true;
+        if (m.inside == medium.name || m.outside == medium.name)
+            (content == 0 ? in_scene : in_element) = true;
     };
     for (const MeshInstance& i : in_.instances) look(in_.meshes[i.mesh].material, i.content);
     for (const PlacedObject& s : in_.shapes) look(s.material, s.content);
@@ -35,7 +36,8 @@ bool SceneCompiler::fills_elements(const MediumDescription& medium) const {
 
 // By index in lights_, before they are sorted.
 uint32_t SceneCompiler::element_of_light(uint32_t i) const {
-    if (i >= first_area_light_) return element_of(memory_.world.contents[area_primitives_[i - first_area_light_]]);
+    if (i >= first_area_light_)
+        return element_of(memory_.world.contents[area_primitives_[i - first_area_light_]]);
     const size_t infinite = first_area_light_ - in_.lights.size();
     return i < infinite ? 0 : element_of(in_.lights[i - infinite].content);
 }

@@ -22,20 +22,25 @@ static void check_cells(const ClassInfo& info, const ObjectDescription& object, 
                                                  [](const Parameter& p) { return p.member.name; });
         return object.parameters.value(name, parameter->default_value);
     };
-    const auto size = value("size").get<std::vector<double>>(), pitch = value("pitch").get<std::vector<double>>();
+    const auto size = value("size").get<std::vector<double>>(),
+               pitch = value("pitch").get<std::vector<double>>();
     const std::string shape = value("shape");
     const bool is_ridge = shape == "groove" || shape == "lens", is_round = shape == "dome" || shape == "lens";
     const double radius = value("radius"), depth = value("depth"), turn = value("turn"), least = 1 - 1e-6;
-    const double reach = radius * (shape == "prism" ? std::abs(std::cos(turn)) + std::abs(std::sin(turn)) : 1.0);
+    const double reach =
+        radius * (shape == "prism" ? std::abs(std::cos(turn)) + std::abs(std::sin(turn)) : 1.0);
     for (size_t axis = 0; axis < (is_ridge ? 1 : 2); ++axis) {
         if (2 * reach * least > pitch[axis])
-            fail_input("{}/radius: elements are {:g} m wide and reach beyond their cells of {:g} m; allowed: at "
-                       "most {:g}", place, 2 * reach, pitch[axis], radius * pitch[axis] / (2 * reach));
+            fail_input(
+                "{}/radius: elements are {:g} m wide and reach beyond their cells of {:g} m; allowed: at "
+                "most {:g}",
+                place, 2 * reach, pitch[axis], radius * pitch[axis] / (2 * reach));
         if (pitch[axis] * least > size[axis])
             fail_input("{}/pitch: {:g} m is more than the size of {:g} m", place, pitch[axis], size[axis]);
     }
     if (is_round && depth * least > radius)
-        fail_input("{}/depth: {:g} m; allowed for a {}: at most the radius of {:g} m", place, depth, shape, radius);
+        fail_input("{}/depth: {:g} m; allowed for a {}: at most the radius of {:g} m", place, depth, shape,
+                   radius);
 }
 
 void SceneCompiler::add_geometry() {
@@ -60,8 +65,8 @@ void SceneCompiler::add_geometry() {
         memory_.light_positions.clear();
         world = build_world(in_, bounds, refs, threads_, memory_.world_features);
         memory_.unrolled_traversal.clear();
-        if (in_.elements.empty() && !has_bodies() && !memory_.world_features.twins && !options_.varying.count("places") &&
-            device_.description.compiles_choices)
+        if (in_.elements.empty() && !has_bodies() && !memory_.world_features.twins &&
+            !options_.varying.count("places") && device_.description.compiles_choices)
             memory_.unrolled_traversal = unroll_traversal(world, in_).glsl;
         memory_.world_key = key;
     }
@@ -172,8 +177,7 @@ WatchedSurface SceneCompiler::add_watched(const std::string& mesh, const std::st
     if (instances.empty() && mesh.empty())
         fail_input("{}: its node has no mesh; allowed there, or with a mesh: the name of one, or of its node",
                    place);
-    if (instances.empty())
-        fail_input("{}: there is no mesh, and no node with one, called {}", place, mesh);
+    if (instances.empty()) fail_input("{}: there is no mesh, and no node with one, called {}", place, mesh);
     for (const uint32_t i : instances) {
         if (in_.instances[i].content != 0)
             fail_input("{}: {} is within an optical element; allowed: a mesh of the scene", place,
@@ -209,13 +213,15 @@ void SceneCompiler::add_receivers() {
         ObjectDescription object = receiver.object;
         const float aspect = object.parameters.value("aspect_ratio", 0.0f);
         object.parameters.erase("aspect_ratio");  // of the image, not of the receiver's record
-        added.push_back(add_record(Interface::receiver, object, recentred(receiver.world_from_local, receiver.content)));
+        added.push_back(
+            add_record(Interface::receiver, object, recentred(receiver.world_from_local, receiver.content)));
         out_.receivers.push_back({receiver.name, no_record, aspect, 0, 0, receiver.wants_stokes,
                                   added.back().info, object.parameters, receiver.world_from_local});
         out_.receivers.back().element = element_of(receiver.content);
         if (receiver.content != 0 && (added.back().info->is_far || added.back().info->on_surface))
-            fail_input("{}: a receiver of class {} cannot be within an optical element; allowed: in the scene",
-                       message_place(in_, object.where), object.class_name);
+            fail_input(
+                "{}: a receiver of class {} cannot be within an optical element; allowed: in the scene",
+                message_place(in_, object.where), object.class_name);
         fix_resolution(out_.receivers.back(), message_place(in_, object.where));
         if (!added.back().info->on_surface) continue;
         Receiver& meter = out_.receivers.back();

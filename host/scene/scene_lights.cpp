@@ -151,7 +151,8 @@ void SceneCompiler::add_lights() {
     light_stokes_.assign(infinite.size(), {});
     for (const PlacedObject& light : in_.lights) {
         opening_ = no_record;
-        const Added added = add_record(Interface::light, light.object, recentred(light.world_from_local, light.content));
+        const Added added =
+            add_record(Interface::light, light.object, recentred(light.world_from_local, light.content));
         opening_lights_.push_back(opening_);
         finite.push_back(added);  // sorted by what measure_lights finds
         light_names_.push_back(light.name);
@@ -279,7 +280,8 @@ void SceneCompiler::measure_lights() {
         out_.light_shapes.push_back(primitive == no_record ? ""
                                                            : out_.placed_names[out_.placed->at(primitive)]);
         light_elements_.push_back(element_of_light(i));
-        if (light_elements_.back() == 0) sorted_bounds.push_back(bounds[i]);
+        if (light_elements_.back() == 0)
+            sorted_bounds.push_back(bounds[i]);
         else if (is_at_infinity(bounds[i]))
             fail_input("{}: light {} shines from infinity within an optical element; allowed: in the scene",
                        in_.file.string(), light_names_[i]);

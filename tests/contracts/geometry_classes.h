@@ -36,8 +36,13 @@ inline std::vector<double> quadratic(double a, double b, double c) {  // a t² +
 }
 
 // Of microstructure, with these parameters: the middle of the dome over a place, if there is one.
-inline const nlohmann::json domes = {{"size", {1.5, 0.75}},      {"pitch", {0.3125, 0.21875}}, {"radius", 0.09375}, {"depth", 0.0625},
-                                     {"placement", "staggered"}, {"density", 0.75},      {"seed", 5}};
+inline const nlohmann::json domes = {{"size", {1.5, 0.75}},
+                                     {"pitch", {0.3125, 0.21875}},
+                                     {"radius", 0.09375},
+                                     {"depth", 0.0625},
+                                     {"placement", "staggered"},
+                                     {"density", 0.75},
+                                     {"seed", 5}};
 constexpr double cell_width = 0.3125, cell_height = 0.21875, dome_radius = 0.09375, dome_depth = 0.0625;
 constexpr double dome_curvature = (dome_radius * dome_radius + dome_depth * dome_depth) / (2 * dome_depth);
 inline std::optional<glm::dvec3> dome_over(const glm::dvec3& p) {
@@ -53,7 +58,8 @@ inline std::optional<glm::dvec3> dome_over(const glm::dvec3& p) {
         if (round == 0) v ^= v >> 16u;
     }
     if (float(v.z >> 8) / 16777216.0f >= 0.75f) return {};
-    return glm::dvec3(start + (column + 0.5) * cell_width, (row + 0.5 - 0.5 * rows) * cell_height, dome_depth - dome_curvature);
+    return glm::dvec3(start + (column + 0.5) * cell_width, (row + 0.5 - 0.5 * rows) * cell_height,
+                      dome_depth - dome_curvature);
 }
 inline bool dome_covers(const std::optional<glm::dvec3>& dome, const glm::dvec3& p) {
     return dome && std::hypot(p.x - dome->x, p.y - dome->y) < dome_radius;

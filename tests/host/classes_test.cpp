@@ -63,4 +63,3 @@ TEST_CASE("a parameter's type, offset, default, range and unit come from its cla
     CHECK(parameter(*lambertian, "reflectance").member.type == "SpectrumRef");
     CHECK(registry.find(Interface::surface, "velvet") == nullptr);
 }
-

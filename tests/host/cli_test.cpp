@@ -125,7 +125,8 @@ TEST_CASE("numbers that are none, out of range or not finite are refused") {
 
 TEST_CASE("wrong usage is one line that says what is allowed") {
     CHECK(complaint({}) ==
-          "no command given; one of: render, measure, merge, view, rays, compare, bench, inspect, lens, classes, "
+          "no command given; one of: render, measure, merge, view, rays, compare, bench, inspect, lens, "
+          "classes, "
           "devices "
           "(see etendue --help)");
     CHECK(complaint({"paint"}).starts_with("no command 'paint'; one of: render,"));

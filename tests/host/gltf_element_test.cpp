@@ -11,7 +11,9 @@ namespace {
 // Scene 0 holds an element of scene 1, which holds a ball.
 GltfBuilder with_element(json element) {
     GltfBuilder b;
-    b.node({{"name", "lens"}, {"translation", {1, 2, 3}}, {"scale", {2, 2, 2}},
+    b.node({{"name", "lens"},
+            {"translation", {1, 2, 3}},
+            {"scale", {2, 2, 2}},
             {"extensions", {{"ETD_optics", {{"element", std::move(element)}}}}}});
     b.node({{"name", "ball"},
             {"extensions", {{"ETD_optics", {{"geometry", {{"class", "sphere"}, {"radius", 0.5}}}}}}}});
@@ -39,7 +41,8 @@ TEST_CASE("an element has a frame without scale, and what it holds is scaled") {
 TEST_CASE("elements of the same scene and scale share what they hold, unless it shines") {
     GltfBuilder b = with_element(subscene(1));
     for (int i = 2; i < 5; ++i) {
-        b.node({{"scale", {i == 4 ? 1 : 2, 2, 2}}, {"extensions", {{"ETD_optics", {{"element", subscene(1)}}}}}});
+        b.node({{"scale", {i == 4 ? 1 : 2, 2, 2}},
+                {"extensions", {{"ETD_optics", {{"element", subscene(1)}}}}}});
     }
     b.document["scenes"] = {{{"nodes", {0, 2, 3, 4}}}, {{"nodes", {1}}}};
     const SceneDescription s = b.import();
@@ -52,7 +55,8 @@ TEST_CASE("elements of the same scene and scale share what they hold, unless it 
 TEST_CASE("faults of elements are named") {
     const std::string at = "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element";
     const auto error = [](json element) { return import_error(with_element(std::move(element)).glb()); };
-    CHECK(error({{"class", "lens"}, {"scene", 1}}) == at + "/class: there is no element class 'lens'; allowed: subscene, microstructure");
+    CHECK(error({{"class", "lens"}, {"scene", 1}}) ==
+          at + "/class: there is no element class 'lens'; allowed: subscene, microstructure");
     CHECK(error(subscene(7)) == at + "/scene: is 7; /scenes has elements 0 to 1");
     CHECK(error(subscene(0)) == at + "/scene: scene 0 holds itself; allowed: another scene");
     json sphere = subscene(1);

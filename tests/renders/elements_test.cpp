@@ -20,7 +20,9 @@ SceneBuilder room(bool with_lamp = true) {
     s.medium("glass", {{"ior", 1.5}, {"absorption", {0.2, 0.4, 1}}});
     return s;
 }
-int glass(SceneBuilder& s) { return s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}}); }
+int glass(SceneBuilder& s) {
+    return s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}});
+}
 
 json subscene(int scene) { return {{"class", "subscene"}, {"scene", scene}}; }
 
@@ -62,7 +64,9 @@ TEST_CASE("a ball of glass in an element, three deep, is as it is without") {
     const Estimates both = render_estimates(scene, plan);
     check_agreement("bidirectional", both, expected, 0.002, 0.01);
     const RenderCounters& c = both.counters;
-    CHECK(c.emitted == doctest::Approx(c.absorbed + c.forward_escaped + c.roulette + c.forward_depth_limit_lost).epsilon(1e-4));
+    CHECK(c.emitted ==
+          doctest::Approx(c.absorbed + c.forward_escaped + c.roulette + c.forward_depth_limit_lost)
+              .epsilon(1e-4));
     plan.algorithm = Algorithm::forward;
     check_agreement("forward", render_estimates(scene, plan), expected, 0.002, 0.01);
 }
@@ -95,11 +99,17 @@ TEST_CASE("lamps and a camera within elements") {
 TEST_CASE("a point lamp within an element") {
     const auto build = [](bool element) {
         SceneBuilder s = room(false);
-        const auto lamp = [&](const Place& place) { s.light({{"type", "point"}, {"intensity", 0.2}}, place); };
+        const auto lamp = [&](const Place& place) {
+            s.light({{"type", "point"}, {"intensity", 0.2}}, place);
+        };
         const int white = s.lambertian({0.8, 0.8, 0.8});
-        const auto fill = [&] { add_box(s, {0.1f, 0.1f, 0.1f}, white, false, at(0.1, 0, 0.05)), lamp(at(-0.1, 0, 0)); };
-        if (element) s.placed("element", subscene(s.scene(fill)), at(0, 0, 0));
-        else fill();
+        const auto fill = [&] {
+            add_box(s, {0.1f, 0.1f, 0.1f}, white, false, at(0.1, 0, 0.05)), lamp(at(-0.1, 0, 0));
+        };
+        if (element)
+            s.placed("element", subscene(s.scene(fill)), at(0, 0, 0));
+        else
+            fill();
         return s.import();
     };
     Scene scene = compile_test_scene(build(true));
@@ -149,17 +159,21 @@ TEST_CASE("glass that touches the boundary of its element from both sides") {
 TEST_CASE("polarized light and fog pass into an element and out of it") {
     const auto build = [](bool element) {
         SceneBuilder s;
-        s.rectangle(3, 3, s.material({{"surface", {{"class", "linear_polarizer"}, {"axis", 0.4}}}}), {{0, 0, -1}, turned});
+        s.rectangle(3, 3, s.material({{"surface", {{"class", "linear_polarizer"}, {"axis", 0.4}}}}),
+                    {{0, 0, -1}, turned});
         s.rectangle(8, 8, s.black_emitter({3, 2, 1}), at(0, 0, -3));
         s.medium("fog", {{"scattering", 0.8}, {"absorption", 0.3}});
         const int cloud = s.material({{"surface", {{"class", "boundary"}}}, {"inside", "fog"}});
-        const int retarder = s.material({{"surface", {{"class", "retarder"}, {"axis", 0.9}, {"retardance", 1.2}}}});
+        const int retarder =
+            s.material({{"surface", {{"class", "retarder"}, {"axis", 0.9}, {"retardance", 1.2}}}});
         const auto fill = [&](const json& turn) {
             s.rectangle(0.5, 0.5, retarder, {{0, 0, 0}, turn});
             s.sphere(0.4, cloud, {{0, 0, 0}, turn});
         };
-        if (element) s.placed("element", subscene(s.scene([&] { fill({0, 0, 0, 1}); })), {{0, 0, 0}, turned});
-        else fill(turned);
+        if (element)
+            s.placed("element", subscene(s.scene([&] { fill({0, 0, 0, 1}); })), {{0, 0, 0}, turned});
+        else
+            fill(turned);
         s.perspective(0.9, at(0, 0, 1.2));
         s.document["nodes"].back()["extensions"]["ETD_optics"]["receiver"] = {{"stokes", true}};
         return s.import();

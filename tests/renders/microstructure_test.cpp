@@ -28,7 +28,8 @@ std::vector<ProbeRay> slanted_rays(size_t count, double angle) {
     std::vector<ProbeRay> rays;
     for (size_t i = 0; i < count; ++i) {
         const double azimuth = random(0, float(2 * pi));
-        const glm::dvec3 d(std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), -std::cos(angle));
+        const glm::dvec3 d(std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth),
+                           -std::cos(angle));
         const glm::dvec3 target(random(-0.45f, 0.45f), random(-0.45f, 0.45f), 0);
         rays.push_back({target - 0.02 * d, 1e30f, d});
     }
@@ -58,8 +59,10 @@ TEST_CASE("ten thousand bumps are where the spheres of the same places are") {
         on_bumps += a[i].geometric_normal.z < 0.999f;
         const double distance = glm::length(a[i].position - b[i].position);
         // Where a ray grazes a bump either answer is right.
-        if (distance > 1e-6 * pitch + 2e-7) ++apart;
-        else farthest = std::max(farthest, distance);
+        if (distance > 1e-6 * pitch + 2e-7)
+            ++apart;
+        else
+            farthest = std::max(farthest, distance);
         if (distance < 1e-6) CHECK(glm::length(a[i].geometric_normal - b[i].geometric_normal) < 2e-4);
     }
     MESSAGE(on_bumps, " on bumps, ", apart, " apart, others within ", farthest / pitch, " pitches");
@@ -69,7 +72,8 @@ TEST_CASE("ten thousand bumps are where the spheres of the same places are") {
 
 // The shadows of hemispheres on their plane are half disks and half ellipses.
 TEST_CASE("bumps hide of their plane what their shadows cover") {
-    const double cover = pi * 0.4 * 0.4 / 16;  // in every other place of every other row, so that shadows stay apart
+    const double cover =
+        pi * 0.4 * 0.4 / 16;  // in every other place of every other row, so that shadows stay apart
     GeometryProbe probe;
     probe.add_shape("microstructure", sheet({{"pitch", {0.04, 0.04}}}), sheet_box, glm::dmat4(1));
     probe.build();
@@ -78,7 +82,8 @@ TEST_CASE("bumps hide of their plane what their shadows cover") {
         const double angle = degrees * pi / 180;
         const size_t n = 400000;
         size_t plane = 0;
-        for (const ProbeTrace& t : probe.trace(slanted_rays(n, angle), false)) plane += t.geometric_normal.z > 0.999999f;
+        for (const ProbeTrace& t : probe.trace(slanted_rays(n, angle), false))
+            plane += t.geometric_normal.z > 0.999999f;
         const double expected = 1 - cover * (1 + 1 / std::cos(angle)) / 2, share = double(plane) / n;
         MESSAGE(share, ", expected ", expected);
         CHECK(std::fabs(share - expected) < 4 * std::sqrt(expected * (1 - expected) / n));
@@ -96,8 +101,13 @@ TEST_CASE("glass with structured faces loses no light") {
             s.environment({1, 1, 1});
             s.medium("glass", {{"ior", 1.5}});
             const int glass = s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}});
-            json structure = {{"class", "microstructure"}, {"size", {1, 1}},     {"pitch", {0.1, 0.1}}, {"radius", 0.04},
-                              {"depth", 0.03},             {"shape", shape}, {"operation", operation}};
+            json structure = {{"class", "microstructure"},
+                              {"size", {1, 1}},
+                              {"pitch", {0.1, 0.1}},
+                              {"radius", 0.04},
+                              {"depth", 0.03},
+                              {"shape", shape},
+                              {"operation", operation}};
             s.shape(structure, glass, at(0, 0, 0.1));
             s.rectangle(1, 1, glass, {{0, 0, -0.1}, {1, 0, 0, 0}});
             const double h = std::sqrt(0.5);
@@ -124,16 +134,24 @@ TEST_CASE("a film of prisms of 90 degrees sends light back that comes straight f
     s.medium("glass", {{"ior", 1.5}});
     const int glass = s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "glass"}});
     s.rectangle(1, 1, glass, {{0, 0, -0.1}, {1, 0, 0, 0}});
-    s.shape({{"class", "microstructure"}, {"size", {1, 1}}, {"pitch", {0.02, 1}}, {"radius", 0.01}, {"depth", 0.01}, {"shape", "groove"}},
+    s.shape({{"class", "microstructure"},
+             {"size", {1, 1}},
+             {"pitch", {0.02, 1}},
+             {"radius", 0.01},
+             {"depth", 0.01},
+             {"shape", "groove"}},
             glass, at(0, 0, 0));
     s.placed("light", {{"class", "collimated"}, {"radius", 0.3}, {"power", 1}}, {{0, 0, -1}, {0, 1, 0, 0}});
-    s.placed("receiver", {{"class", "illuminance"}, {"size", {1, 1}}, {"resolution", {1, 1}}}, {{0, 0, 0.5}, {1, 0, 0, 0}});
+    s.placed("receiver", {{"class", "illuminance"}, {"size", {1, 1}}, {"resolution", {1, 1}}},
+             {{0, 0, 0.5}, {1, 0, 0, 0}});
     s.document["nodes"].back()["name"] = "through";
-    s.placed("receiver", {{"class", "illuminance"}, {"size", {1, 1}}, {"resolution", {1, 1}}}, at(0, 0, -0.5));
+    s.placed("receiver", {{"class", "illuminance"}, {"size", {1, 1}}, {"resolution", {1, 1}}},
+             at(0, 0, -0.5));
     s.document["nodes"].back()["name"] = "back";
     Scene scene = compile_test_scene(s.import());
     RenderPlan plan;
-    plan.width = plan.height = 1, plan.algorithm = Algorithm::forward, plan.forward_paths = 20000, plan.passes = 1, plan.seeds = 4;
+    plan.width = plan.height = 1, plan.algorithm = Algorithm::forward, plan.forward_paths = 20000,
+    plan.passes = 1, plan.seeds = 4;
     const auto flux = [&](size_t receiver) {
         plan.receiver = scene.receivers[receiver].name;
         return window_mean(render_estimates(scene, plan)).mean;
