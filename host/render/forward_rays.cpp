@@ -82,7 +82,7 @@ ForwardRays::ForwardRays(Device& device, Scene& scene, const RenderSettings& set
 }
 
 uint64_t ForwardRays::splat_bytes() const {
-    return pixel_count(all_views(settings_)) * (scene_.features.spectral ? 32 : 24) *
+    return pixel_count(all_views(settings_)) * (scene_.features.spectral ? 48 : 36) *
            (settings_.stokes ? 4 : std::max<uint64_t>(1, techniques_.light_layers));
 }
 
