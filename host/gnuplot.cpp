@@ -12,7 +12,8 @@ std::string run_gnuplot(const std::string& script) {
     if (std::system("command -v gnuplot >/dev/null 2>&1") != 0)
         return "no plots: gnuplot is not installed (on Debian: gnuplot-nox)";
     const auto before = signal(SIGPIPE, SIG_IGN);  // where gnuplot ends early
-    std::FILE* gnuplot = popen("gnuplot 2>/dev/null", "w");
+    // A script from its standard input gnuplot reads byte by byte.
+    std::FILE* gnuplot = popen("gnuplot /dev/stdin 2>/dev/null", "w");
     const bool sent = gnuplot && std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
     const int status = gnuplot ? pclose(gnuplot) : -1;
     signal(SIGPIPE, before);

@@ -147,11 +147,11 @@ int measure_command(const MeasureOptions& options) {
     Outputs outputs;
     if (!options.output.empty() && measurement.passes.count() > 0) {
         const ReportOptions report = report_options(checkpoint(), options.output, options.command_line);
-        for (const std::string& note : write_report(report, measurement, outputs)) show_note(progress, note);
-        if (!options.quiet)
-            for (const Readings& readings : measurement.meters)
-                fmt::print("{}\n{}\n", readings.meter.name,
-                           as_text(figure_table(figures_of(readings, report.points, report.glare_from))));
+        const MeterFigures figures = all_figures(report, measurement);
+        for (const std::string& note : write_report(report, measurement, figures, outputs))
+            show_note(progress, note);
+        for (size_t m = 0; m < figures.size() && !options.quiet; ++m)
+            fmt::print("{}\n{}\n", measurement.meters[m].meter.name, as_text(figure_table(figures[m])));
     }
     if (!options.checkpoint.empty() && measurement.passes.count() > 0) outputs.write(save);
     outputs.finish();

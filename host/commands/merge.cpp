@@ -129,8 +129,9 @@ void write_measurement(const MergeOptions& options, Checkpoint& all, const fs::p
     if (!options.stats.empty()) outputs.write([&] { write_stats(options, all, {error, error}); });
     if (options.output.empty()) return;
     prepare_output_folder(options.output, "figures.csv", "measurement");
+    const ReportOptions report = report_options(all, options.output, options.command_line);
     for (const std::string& note :
-         write_report(report_options(all, options.output, options.command_line), measurement, outputs))
+         write_report(report, measurement, all_figures(report, measurement), outputs))
         if (!options.quiet) fmt::print(stderr, "{}\n", note);
 }
 

@@ -37,11 +37,12 @@ std::string ledger(const Measurement& measurement) {
 }
 
 std::string meter_section(const ReportOptions& options, const Measurement& measurement,
-                          const Readings& readings, const std::string& name) {
+                          const Readings& readings, const std::vector<Figure>& figures,
+                          const std::string& name) {
     const Meter& meter = readings.meter;
     std::string html = fmt::format("<h2>{}</h2>\n<p>{} × {} pixels, {}.</p>\n", escaped(meter.name),
                                    meter.columns, meter.rows, meter.unit);
-    html += as_html(figure_table(figures_of(readings, options.points, options.glare_from)));
+    html += as_html(figure_table(figures));
     if (is_dark(readings))
         html +=
             fmt::format("<p class=\"note\">{}</p>\n", escaped(darkness_text(readings, measurement.power)));
@@ -58,7 +59,8 @@ std::string meter_section(const ReportOptions& options, const Measurement& measu
 
 }  // namespace
 
-std::string page_of(const ReportOptions& options, const Measurement& measurement) {
+std::string page_of(const ReportOptions& options, const Measurement& measurement,
+                    const MeterFigures& figures) {
     std::string html = head;
     html += "<h1>Measurement</h1>\n<dl>\n";
     for (const auto& [name, value] : options.attributes)
@@ -68,7 +70,7 @@ std::string page_of(const ReportOptions& options, const Measurement& measurement
                         algorithm_name(measurement.choice.algorithm), escaped(measurement.choice.reason));
     const std::vector<std::string> names = file_names(measurement);
     for (size_t m = 0; m < names.size(); ++m)
-        html += meter_section(options, measurement, measurement.meters[m], names[m]);
+        html += meter_section(options, measurement, measurement.meters[m], figures[m], names[m]);
     return html + ledger(measurement) + "</body></html>\n";
 }
 

@@ -73,10 +73,11 @@ std::string triangle_table(const Readings& readings) {
     return text + "\n";
 }
 
-Table all_figures(const Measurement& measurement, const ReportOptions& options) {
+Table table_of_all(const Measurement& measurement, const MeterFigures& figures) {
     Table table = {{"meter", "figure", "unit", "value", "low_95", "high_95", "where"}};
-    for (const Readings& readings : measurement.meters) {
-        for (const Figure& f : figures_of(readings, options.points, options.glare_from))
+    for (size_t m = 0; m < figures.size(); ++m) {
+        const Readings& readings = measurement.meters[m];
+        for (const Figure& f : figures[m])
             table.push_back({readings.meter.name, f.name, f.unit, fmt::format("{:.8g}", f.interval.value),
                              fmt::format("{:.8g}", f.interval.low), fmt::format("{:.8g}", f.interval.high),
                              f.where});
@@ -88,6 +89,13 @@ Table all_figures(const Measurement& measurement, const ReportOptions& options) 
 }
 
 }  // namespace
+
+MeterFigures all_figures(const ReportOptions& options, const Measurement& measurement) {
+    MeterFigures figures;
+    for (const Readings& readings : measurement.meters)
+        figures.push_back(figures_of(readings, options.points, options.glare_from));
+    return figures;
+}
 
 Table figure_table(const std::vector<Figure>& figures) {
     Table table = {{"figure", "value", "± 95 %", "unit", "where"}};
@@ -132,11 +140,11 @@ std::vector<std::string> file_names(const Measurement& measurement) {
 }
 
 std::vector<std::string> write_report(const ReportOptions& options, const Measurement& measurement,
-                                      Outputs& outputs) {
+                                      const MeterFigures& figures, Outputs& outputs) {
     std::vector<std::string> notes;
     const std::vector<std::string> names = file_names(measurement);
     outputs.write([&] {
-        write_atomically(options.folder / "figures.csv", as_csv(all_figures(measurement, options)));
+        write_atomically(options.folder / "figures.csv", as_csv(table_of_all(measurement, figures)));
     });
     if (const auto lines = balance_of(measurement); !lines.empty()) {
         Table table = {{"light", "lm", "meaning"}};
@@ -167,14 +175,15 @@ std::vector<std::string> write_report(const ReportOptions& options, const Measur
         if (const auto rays = recorded_rays(readings))
             outputs.write([&] { write_tm25(stem.string() + ".tm25ray", *rays); });
         else if (readings.rays.most > 0)
-            notes.push_back(fmt::format("{}: no rays have been recorded: forward rays alone are",
-                                        readings.meter.name));
+            notes.push_back(
+                fmt::format("{}: no rays have been recorded: forward rays alone are", readings.meter.name));
         for (const char* plot : {".map.png", ".sections.svg", ".polar.svg"}) fs::remove(stem.string() + plot);
         if (!is_dark(readings) && !has_parts(readings)) script += plots_of(readings, stem);
     }
     if (!script.empty())
         if (const std::string failure = run_gnuplot(script); !failure.empty()) notes.push_back(failure);
-    outputs.write([&] { write_atomically(options.folder / "index.html", page_of(options, measurement)); });
+    outputs.write(
+        [&] { write_atomically(options.folder / "index.html", page_of(options, measurement, figures)); });
     return notes;
 }
 

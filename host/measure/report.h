@@ -2,8 +2,8 @@
 //   index.html               a page of its own: figures, maps, sections, polar diagrams, the balance of power
 //   figures.csv              every figure of every meter, with its interval
 //   balance.csv              where the light has gone, by material, where forward rays tell
-//   METER.exr, METER.csv     each pixel and its standard error; of a meter on a surface the table is by triangle
-//   METER.ies, METER.ldt     of intensities, as lamps are published (LM-63-2019, EULUMDAT)
+//   METER.exr, METER.csv     each pixel and its standard error; of a meter on a surface the table is by
+//   triangle METER.ies, METER.ldt     of intensities, as lamps are published (LM-63-2019, EULUMDAT)
 //   METER.tm25ray            the rays that a receiver has recorded (TM-25)
 //   METER.map.png            in false colours with isolines
 //   METER.sections.svg       through the middle, with the 95 % interval; of intensities METER.polar.svg
@@ -27,12 +27,17 @@ struct ReportOptions {
         attributes;  // of the images, and named on the page: scene, command, seed …
 };
 
-// What each meter has read, for a terminal; the page has the same tables.
+// Of each meter, in their order. What is told of a measurement, in files and on a terminal, takes these: many
+// pixels take a while.
+using MeterFigures = std::vector<std::vector<Figure>>;
+MeterFigures all_figures(const ReportOptions& options, const Measurement& measurement);
+
+// What a meter has read, for a terminal; the page has the same tables.
 Table figure_table(const std::vector<Figure>& figures);
 
 // Returns lines for the user: what could not be drawn.
 std::vector<std::string> write_report(const ReportOptions& options, const Measurement& measurement,
-                                      Outputs& outputs);
+                                      const MeterFigures& figures, Outputs& outputs);
 
 // What --error asks: the worst of all meters, of those that light has reached; of their means or worst
 // pixels.
@@ -59,6 +64,7 @@ struct BalanceLine {
 std::vector<BalanceLine> balance_of(const Measurement& measurement);
 
 // The page; it holds the plots that are in the folder.
-std::string page_of(const ReportOptions& options, const Measurement& measurement);
+std::string page_of(const ReportOptions& options, const Measurement& measurement,
+                    const MeterFigures& figures);
 
 }  // namespace etendue

@@ -43,10 +43,11 @@ void merge(std::span<ExactSum> sums, std::span<const ExactSum> others) {
 
 glm::dvec3 value(const ExactSum& sum) {
     glm::dvec3 result;
+    const double unit = std::ldexp(1.0, 24 * (int(sum.window) - 6));
     for (size_t c = 0; c < 3; ++c) {
         const __int128 whole = int64_t(joined(sum.upper, sum.upper_high, c));
         const __int128 total = whole * (1 << 24) + int64_t(joined(sum.lower, sum.lower_high, c));
-        result[int(c)] = std::ldexp(double(total), 24 * (int(sum.window) - 6));
+        result[int(c)] = double(total) * unit;
     }
     return result;
 }
