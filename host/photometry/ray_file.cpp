@@ -95,13 +95,25 @@ void RayCollector::add_tristimulus(const glm::vec2& xz) {
     file_.tristimulus.push_back(xz);
 }
 
+void RayCollector::add_polarization(const RayPolarization& p) {
+    const glm::dvec3 s(p.stokes), axis(p.axis);
+    if (!(glm::length(s) <= 1.001))
+        fail(file_.rays.size(),
+             "has the Stokes parameters ({:.6g}, {:.6g}, {:.6g}); must be parts of its flux, at most 1 "
+             "together",
+             s.x, s.y, s.z);
+    const double across = glm::length(glm::cross(axis, glm::dvec3(file_.rays.back().direction)));
+    if ((s.x != 0 || s.y != 0) && !(across > 1e-3 && across < 1e6))
+        fail(file_.rays.size(), "has the axis of polarization ({:.6g}, {:.6g}, {:.6g}); must lie across it",
+             axis.x, axis.y, axis.z);
+    file_.polarization.push_back(p);
+}
+
 void RayCollector::finish() {
     if (!(file_.flux() > 0)) fail_input("{}: none of its {} rays carries any flux", name_, file_.rays.size());
     if (turned_ > 0)
         file_.warnings.push_back(fmt::format("{} of {} directions were no unit vectors: they are made such",
                                              turned_, file_.rays.size()));
-    if (!file_.polarization.empty())
-        file_.warnings.emplace_back("the polarization of its rays is not traced");
     const double flux = file_.flux(),
                  stated = file_.unit == RayFile::Unit::watt ? file_.stated_watts : file_.stated_lumens;
     if (stated > 0 && std::abs(flux / stated - 1) > 0.03)

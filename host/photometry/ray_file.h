@@ -25,7 +25,8 @@ struct RaySpectrum {
     bool operator==(const RaySpectrum&) const = default;
 };
 
-// Stokes parameters as a part of the flux, and the direction of their x axis, as TM-25 has them.
+// S1 to S3 as parts of the flux, at most 1 together, and the direction of their x axis, which counts as far
+// as it lies across that of the ray, as TM-25 has them; signs are those of shaders/lib/stokes.glsl.
 struct RayPolarization {
     glm::vec3 stokes, axis;
 
@@ -35,13 +36,13 @@ struct RayPolarization {
 // What such a file holds. Rays have spectra by `wavelengths`, or by `spectra`, or none.
 struct RayFile {
     enum class Unit { watt, lumen };
-    Unit unit = Unit::watt;             // of SourceRay::flux
-    std::vector<SourceRay> rays;        // at least one, not all of them dark
-    std::vector<float> lumens;          // of each ray, beside its watts; empty = not told
-    std::vector<glm::vec2> tristimulus; // X and Z of each ray, beside its lumens, which are Y; or empty
-    std::vector<float> wavelengths;     // nm, of each ray
-    std::vector<RaySpectrum> spectra;   // tables
-    std::vector<uint32_t> spectrum_of;  // of each ray, an index into `spectra`; empty = all have the first
+    Unit unit = Unit::watt;              // of SourceRay::flux
+    std::vector<SourceRay> rays;         // at least one, not all of them dark
+    std::vector<float> lumens;           // of each ray, beside its watts; empty = not told
+    std::vector<glm::vec2> tristimulus;  // X and Z of each ray, beside its lumens, which are Y; or empty
+    std::vector<float> wavelengths;      // nm, of each ray
+    std::vector<RaySpectrum> spectra;    // tables
+    std::vector<uint32_t> spectrum_of;   // of each ray, an index into `spectra`; empty = all have the first
     std::vector<RayPolarization> polarization;   // of each ray, or empty
     double stated_watts = 0, stated_lumens = 0;  // of all rays, beside them; 0 = not told
     std::string format;                          // "TM-25"
@@ -60,8 +61,8 @@ constexpr float farthest_ray = 1e9f;  // mm, of a start from the origin, along e
 RayFile read_ray_file(const std::filesystem::path& file);
 
 // TM-25 of 2013: positions, directions, watts or lumens or both, and where there are watts wavelengths (kind
-// 2) or tables (kinds 3, 4), where there are lumens alone tristimulus values. What is written reads back to the same. `date` as ISO 8601 has it, at most 27
-// characters.
+// 2) or tables (kinds 3, 4), where there are lumens alone tristimulus values. What is written reads back to
+// the same. `date` as ISO 8601 has it, at most 27 characters.
 void write_tm25(const std::filesystem::path& file, const RayFile& rays, const std::string& date = "");
 
 }  // namespace etendue

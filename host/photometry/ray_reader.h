@@ -53,6 +53,7 @@ class RayCollector {
     void add_lumens(float lumens);
     void add_tristimulus(const glm::vec2& xz);
     void add_wavelength(double nm);
+    void add_polarization(const RayPolarization& polarization);
     // Fails where all rays are dark; says what was corrected.
     void finish();
 

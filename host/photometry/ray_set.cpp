@@ -244,17 +244,23 @@ RaySet append_ray_set(std::vector<uint32_t>& words, const RayFile& file) {
     ref.colors = uint32_t(set.colors.size());
     if (!(sum > 0)) set.lumens = 0;
     ref.flux = float(set.lumens.value_or(0));
-    if (words.size() + n * (6 + 2 * ref.uneven + !color_of.empty()) > most_words)
+    ref.polarized = !file.polarization.empty();
+    const size_t words_a_ray = ref.polarized ? 12 : 6;
+    if (words.size() + n * (words_a_ray + 2 * ref.uneven + !color_of.empty()) > most_words)
         fail_input("ray files with more than 2^30 numbers together");
     if (ref.uneven && sum > 0) append_alias_table(words, weights, sum);
     words.insert(words.end(), color_of.begin(), color_of.end());
     glm::vec3 lo(std::numeric_limits<float>::max()), hi(-lo);
-    words.reserve(words.size() + 6 * n);
-    for (const SourceRay& ray : file.rays) {
+    words.reserve(words.size() + words_a_ray * n);
+    const auto append = [&](const glm::vec3& v) {
+        for (int k = 0; k < 3; ++k) words.push_back(std::bit_cast<uint32_t>(v[k]));
+    };
+    for (size_t i = 0; i < n; ++i) {
+        const SourceRay& ray = file.rays[i];
         const glm::vec3 p = ray.position * 0.001f;
         lo = glm::min(lo, p), hi = glm::max(hi, p);
-        for (int k = 0; k < 3; ++k) words.push_back(std::bit_cast<uint32_t>(p[k]));
-        for (int k = 0; k < 3; ++k) words.push_back(std::bit_cast<uint32_t>(ray.direction[k]));
+        append(p), append(ray.direction);
+        if (ref.polarized) append(file.polarization[i].stokes), append(file.polarization[i].axis);
     }
     ref.lo = lo, ref.hi = hi;
 
@@ -265,9 +271,10 @@ RaySet append_ray_set(std::vector<uint32_t>& words, const RayFile& file) {
                                 : has_tables               ? fmt::format(", {} spectra", file.spectra.size())
                                 : set.colors.size() > 1    ? fmt::format(", {} colours", set.colors.size())
                                                            : "";
-    set.summary = fmt::format("{}, {} rays{}{}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) mm",
-                              file.format, n, carries, spectra, 1000 * lo.x, 1000 * lo.y, 1000 * lo.z,
-                              1000 * hi.x, 1000 * hi.y, 1000 * hi.z);
+    set.summary =
+        fmt::format("{}, {} rays{}{}{}, from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) mm",
+                    file.format, n, carries, spectra, ref.polarized ? ", polarized" : "", 1000 * lo.x,
+                    1000 * lo.y, 1000 * lo.z, 1000 * hi.x, 1000 * hi.y, 1000 * hi.z);
     return set;
 }
 

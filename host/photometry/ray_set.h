@@ -19,9 +19,10 @@ struct RayFileRef {
     uint32_t first_color = 0;
     float flux = 0;          // lm
     float scale = 1;         // of the record's colour, so that its luminance is 1
+    uint32_t polarized = 0;  // rays have Stokes parameters
     glm::vec3 lo{0}, hi{0};  // m, of where rays start
 };
-static_assert(sizeof(RayFileRef) == 52);
+static_assert(sizeof(RayFileRef) == 56);
 
 // What a file's rays carry, as the renderer needs it.
 struct RaySet {

@@ -1,6 +1,7 @@
 // Ray files of Ansys Speos (.ray): 28 bytes, of which the first number is the flux in watts and the last that
 // in lumens, then rays of 8 numbers (position in mm, direction, wavelength in nm, energy on a scale of its
-// own), with five more where they are polarized, as its manual describes them ("Contents of ray files").
+// own), with five more where they are polarized: the great axis of the ellipse, its small axis over the great
+// one, and which way it turns (0 right, 1 left), as its manual describes them ("Contents of ray files").
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +11,12 @@ namespace etendue {
 namespace {
 
 constexpr uint64_t header_bytes = 28;
+
+// Light whose field is as long along the small axis of its ellipse as that is by the great one, 1.
+RayPolarization of_ellipse(const glm::vec3& great_axis, float small_axis, bool turns_left) {
+    const float size = 1 + small_axis * small_axis;
+    return {{(1 - small_axis * small_axis) / size, 0, (turns_left ? -2 : 2) * small_axis / size}, great_axis};
+}
 
 // Whether the first rays have directions and wavelengths if each takes so many numbers.
 bool fits(RayReader& in, uint32_t columns) {
@@ -43,8 +50,8 @@ RayFile read_speos(RayReader& in) {
     in.for_each_ray(header_bytes, count, columns, [&](std::span<const float> r) {
         rays.add(r.first(3), r.subspan(3, 3), r[7]);
         rays.add_wavelength(r[6]);
+        if (columns == 13) rays.add_polarization(of_ellipse({r[8], r[9], r[10]}, r[11], r[12] != 0));
     });
-    if (columns == 13) file.warnings.emplace_back("the polarization of its rays is not read");
     rays.finish();
     const double scale = watts / file.flux();
     for (SourceRay& ray : file.rays) ray.flux = float(ray.flux * scale);

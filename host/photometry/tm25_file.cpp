@@ -163,7 +163,7 @@ void read_rays(RayReader& in, const Layout& layout, uint64_t start, RayFile& fil
         if (has[wavelength]) rays.add_wavelength(nm);
         if (has[watts] && has[lumens]) rays.add_lumens(phi_v);
         if (has[stokes]) {
-            file.polarization.push_back({{r[at], r[at + 1], r[at + 2]}, {r[at + 3], r[at + 4], r[at + 5]}});
+            rays.add_polarization({{r[at], r[at + 1], r[at + 2]}, {r[at + 3], r[at + 4], r[at + 5]}});
             at += 6;
         }
         if (has[tristimulus]) {

@@ -59,7 +59,8 @@ HeadComment head_comment(const std::string& text) {
 void read_class(const std::string& text, ClassInfo& info) {
     HeadComment head = head_comment(text);
     info.summary = std::move(head.summary), info.example = std::move(head.example);
-    info.says_polarization = text.find(info.prefix + "_mueller(") != std::string::npos;
+    info.says_polarization = text.find(info.prefix + "_mueller(") != std::string::npos ||
+                             text.find(info.prefix + "_emitted_stokes(") != std::string::npos;
     info.says_coverage = text.find(info.prefix + "_coverage(") != std::string::npos;
     info.is_crystal = text.find(info.prefix + "_crystal(") != std::string::npos;
     info.has_aperture = text.find("#define " + info.prefix + "_HAS_APERTURE") != std::string::npos;
@@ -322,6 +323,9 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
         text += fmt::format("#define TAG_{} {}\n#include \"{}\"\n", info->prefix, info->tag, info->file);
         if (interface.interface == Interface::surface && !info->says_polarization)
             text += fmt::format("#define {}_mueller(r, c, from, to, event) unsaid_mueller(to, event)\n",
+                                info->prefix);
+        if (interface.interface == Interface::light && !info->says_polarization)
+            text += fmt::format("#define {}_emitted_stokes(r, u_position, u_direction) no_light_stokes()\n",
                                 info->prefix);
         if (interface.interface == Interface::receiver) {
             text += fmt::format("#define {0}_HAS_RECEPTOR {1:d}\n#define {0}_IS_FAR {2:d}\n", info->prefix,

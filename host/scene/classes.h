@@ -56,7 +56,7 @@ struct ClassInfo {
     std::string prefix;              // of its functions: the name, or "INTERFACE_name" (shaders/registry.h)
     std::string summary;             // the comment at the head of the file, without the example
     std::string example;             // as it stands there, JSON; may be empty
-    bool says_polarization = false;  // NAME_mueller is there
+    bool says_polarization = false;  // NAME_mueller is there, of a light NAME_emitted_stokes
     bool never_emits = false;        // a geometry that no light is sampled on
     bool says_coverage = false;      // NAME_coverage is there
     bool is_crystal = false;         // NAME_crystal is there: it refracts doubly

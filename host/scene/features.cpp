@@ -52,6 +52,7 @@ std::string Features::defines() const {
     define("HAS_CRYSTALS", crystals);
     define("HAS_BODY_MUELLER", body_mueller);
     define("HAS_POLARIZED_LIGHTS", polarization && polarized_lights);
+    define("HAS_POLARIZED_RAYS", polarization && polarized_rays);
     define("HAS_APERTURES", apertures);
     define("HAS_FAR_RECEIVERS", far_receivers);
     define("HAS_SURFACE_METERS", surface_meters);

@@ -32,6 +32,7 @@ struct Features {
     bool spectral = false;          // paths carry wavelengths instead of colours
     bool polarization = false;      // paths carry Stokes vectors
     bool polarized_lights = false;  // some light is polarized from the start
+    bool polarized_rays = false;    // … ray by ray
     bool body_mueller = false;      // a class polarizes what its body sends out
     bool general_mueller =
         false;                    // a class has matrices that are not of two blocks (shaders/lib/stokes.glsl)

@@ -106,6 +106,7 @@ RayFileRef SceneCompiler::add_rays(const std::filesystem::path& file, const Clas
     }
     const RaySet& set = known->second;
     RayFileRef ref = set.ref;
+    out_.features.polarized_rays |= ref.polarized != 0;
     const auto member = [&]<class T>(const char* name, T value) {
         for (const Parameter& p : info.parameters)
             if (p.member.name == name) std::memcpy(&value, record.data() + p.member.offset, sizeof value);
@@ -296,6 +297,7 @@ void SceneCompiler::measure_lights() {
     out_.features.scene_light_count = uint32_t(sorted_bounds.size());
     out_.features.infinite_light_count = tree.infinite_count;
     upload("Lights", sorted_lights);
+    out_.features.polarized_lights |= out_.features.polarized_rays;
     if (out_.features.polarized_lights) upload("LightStokesTable", sorted_stokes);
     upload("LightNodes", tree.nodes);
     upload("LightTrails", tree.trails);

@@ -122,6 +122,9 @@
 #ifndef HAS_POLARIZED_LIGHTS
 #define HAS_POLARIZED_LIGHTS 0
 #endif
+#ifndef HAS_POLARIZED_RAYS
+#define HAS_POLARIZED_RAYS 0
+#endif
 #ifndef HAS_APERTURES
 #define HAS_APERTURES 0
 #endif

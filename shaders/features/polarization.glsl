@@ -76,7 +76,7 @@ void start_rows(inout Path path, uint receiver) {
 #define start_rows(path, receiver) path.polarization = unpolarized()
 #define leading(polarization) polarization
 #endif
-#define start_stokes(path, light) path.polarization = light_polarization(light, path.direction)
+#define start_stokes(path, light, u_position, u_direction) path.polarization = ray_polarization(light, path.direction, u_position, u_direction)
 
 // A path comes to s along its direction and leaves along another.
 void polarize(inout Path path, ScatteringPoint s, Mueller m, vec3 leaving) {
@@ -217,7 +217,7 @@ Received analysed(ShadowRay shadow, Spectrum brought) {
 
 #else
 #define start_rows(path, receiver)
-#define start_stokes(path, light)
+#define start_stokes(path, light, u_position, u_direction)
 #define polarize(path, s, mueller, leaving)
 #define prefer_azimuth(path, s, event)
 #define polarize_shadow(shadow, path, s, mueller)

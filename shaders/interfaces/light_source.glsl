@@ -13,6 +13,10 @@
 //   void        NAME_bounds(R r, out vec3 lo, out vec3 hi)             world box; lo > hi for a light at infinity
 //   LightCone   NAME_cone(R r)                                     directions into which it sends light
 //
+// and where rays have polarizations of their own:
+//
+//   LightStokes NAME_emitted_stokes(R r, vec2 u_position, vec2 u_direction)     of the ray that emit sends by the same numbers
+//
 // All in world space. Where a function is asked about a direction, it points towards the light. Delta lights are asked only
 // about their own light: hit.position is theirs, or the direction is.
 //
@@ -50,6 +54,13 @@ struct EmittedRay {
     bool is_delta;      // rays can never hit the light
     bool front;         // leaves on the side of the surface's geometric normal; true where there is no surface
 };
+
+// Twin in host/scene/records.h.
+struct LightStokes {
+    vec3 stokes;  // S1 to S3 over S0
+    vec3 axis;    // x of their frame, as far as it lies across the light's direction; unit, in world space
+};
+LightStokes no_light_stokes() { return LightStokes(vec3(0), vec3(1, 0, 0)); }
 
 EmittedRay no_emitted_ray() {
     return EmittedRay(vec3(0), vec3(0), vec3(0, 0, 1), vec3(0, 0, 1), Spectrum(0), 0.0, true, true);

@@ -11,7 +11,7 @@
 // A file on the device, twin in host/photometry/ray_set.h. Layout of ray_words from `first`:
 //   where rays are uneven, of each ray: a threshold in 2^24, the ray that stands in for it above that
 //   where there are several colours, of each ray: which
-//   of each ray: position, m, and direction, as bits of floats
+//   of each ray: position, m, and direction, as bits of floats, and where rays are polarized S1 to S3 over S0 and their x axis
 struct RayFileRef {
     uint first;
     uint count;
@@ -20,6 +20,7 @@ struct RayFileRef {
     uint first_color;  // in ray_colors
     float flux;        // lm
     float scale;       // of the light's own colour
+    uint polarized;
     vec3 lo, hi;       // m, of where rays start
 };
 
@@ -51,26 +52,38 @@ uint rays_draw(RayFileRef f, float u, float more, float within) {
     return uint(within * 16777216.0) < ray_words[at] ? entry : ray_words[at + 1u];
 }
 
+// The same, of the numbers that a ray is emitted by.
+uint rays_draw(RayFileRef f, vec2 u_position, vec2 u_direction) { return rays_draw(f, u_position.x, u_direction.x, u_position.y); }
+
+// Of the colours, if there are several; behind them, of what else rays have.
+uint rays_colors_at(RayFileRef f) { return f.first + (f.uneven != 0u ? 2u * f.count : 0u); }
+uint rays_place(RayFileRef f, uint ray) {
+    return rays_colors_at(f) + (f.colors > 1u ? f.count : 0u) + (f.polarized != 0u ? 12u : 6u) * ray;
+}
+vec3 rays_vector(uint at) { return uintBitsToFloat(uvec3(ray_words[at], ray_words[at + 1u], ray_words[at + 2u])); }
+
 EmittedRay rays_emit(RaysLight r, SceneBounds bounds, vec2 u_position, vec2 u_direction) {
     RayFileRef f = r.file;
     float flux = rays_flux(r);
     if (!(flux > 0.0)) return no_emitted_ray();
-    uint ray = rays_draw(f, u_position.x, u_direction.x, u_position.y);
-    uint at = f.first + (f.uneven != 0u ? 2u * f.count : 0u);
+    uint ray = rays_draw(f, u_position, u_direction), at = rays_place(f, ray);
     SpectrumRef color = r.color;
     float scale = flux * f.scale;
     if (f.colors > 0u) {
-        color = ray_colors[f.first_color + (f.colors > 1u ? ray_words[at + ray] : 0u)];
+        color = ray_colors[f.first_color + (f.colors > 1u ? ray_words[rays_colors_at(f) + ray] : 0u)];
         scale = flux;
     }
-    if (f.colors > 1u) at += f.count;
-    at += 6u * ray;
-    vec3 position = uintBitsToFloat(uvec3(ray_words[at], ray_words[at + 1u], ray_words[at + 2u]));
-    vec3 direction = uintBitsToFloat(uvec3(ray_words[at + 3u], ray_words[at + 4u], ray_words[at + 5u]));
     mat3 frame = rays_frame(r);
-    direction = normalize(frame * direction);
-    return EmittedRay(r.placement.world_from_local[3] + frame * position, vec3(0), direction, direction, untinted_value(color) * scale,
+    vec3 direction = normalize(frame * rays_vector(at + 3u));
+    return EmittedRay(r.placement.world_from_local[3] + frame * rays_vector(at), vec3(0), direction, direction, untinted_value(color) * scale,
                       1.0, true, true);
+}
+
+LightStokes rays_emitted_stokes(RaysLight r, vec2 u_position, vec2 u_direction) {
+    if (r.file.polarized == 0u) return no_light_stokes();
+    uint at = rays_place(r.file, rays_draw(r.file, u_position, u_direction));
+    vec3 axis = rays_frame(r) * rays_vector(at + 9u);
+    return LightStokes(rays_vector(at + 6u), axis / max(length(axis), 1e-30));
 }
 
 float rays_pdf_emit(RaysLight r, SceneBounds bounds, vec3 direction, LightHit hit) { return 1.0; }

@@ -17,8 +17,8 @@ Path emit_light_ray(uint index) {
     path.random = start_forward_sampler(forward_pass.pass, index, forward_pass.count, forward_pass.seed);
     float probability;
     uint light = choose_emitter(sample_1d(path.random), probability);
-    vec2 u_position = sample_2d(path.random);
-    EmittedRay ray = light_emit(lights[light], scene_bounds(), u_position, sample_2d(path.random));
+    vec2 u_position = sample_2d(path.random), u_direction = sample_2d(path.random);
+    EmittedRay ray = light_emit(lights[light], scene_bounds(), u_position, u_direction);
     float density = ray.pdf * probability;
     path.origin = offset_origin(ray.origin, ray.error, ray.normal, ray.direction);
     path.direction = ray.direction;
@@ -31,7 +31,7 @@ Path emit_light_ray(uint index) {
     path.flags = PATH_STARTS;
     path.vertices = uvec2(NO_RECORD, 0u);
     start_hero(path, sample_seed(path.random));
-    start_stokes(path, light);
+    start_stokes(path, light, u_position, u_direction);
     leave_light(path, light);
     start_mode(path);
     start_bending(path);

@@ -287,18 +287,75 @@ TEST_CASE("ray files: bad ones are refused in one line with place and reason") {
     check_says(zemax.complaint(), {"ends after 100 bytes"});
 
     Damaged lighttools("own_3rays_lighttools_watt.ray");
-    check_says(lighttools.put(4, uint32_t(3)).complaint(), {"byte 4", "version 3", "must be 2"});
-    check_says(lighttools.put(4, uint32_t(2)).put(16, int32_t(1)).complaint(), {"byte 16", "far field"});
+    check_says(lighttools.put(4, uint32_t(4)).complaint(), {"byte 4", "version is 4", "from 2 to 3"});
+    check_says(lighttools.put(4, uint32_t(2)).put(16, int32_t(2)).complaint(), {"byte 16", "far field is 2"});
     check_says(lighttools.put(16, int32_t(0)).put(20, int32_t(1)).complaint(),
-               {"byte 20", "kind of colour is 1"});
+               {"byte 20", "kind of colour is 1", "tristimulus values (1) are not read"});
     check_says(lighttools.put(20, int32_t(0)).put(128, 'X').complaint(), {"byte 128", "must be 'LTRFEND'"});
     lighttools.bytes.resize(130);
     check_says(lighttools.complaint(), {"byte 44", "must be a multiple of 28"});
+
+    Damaged stokes("own_3rays_lighttools_watt.ray");
+    stokes.put(4, uint32_t(3)).bytes.insert(44, std::string("\1\0\0\0", 4));
+    check_says(stokes.complaint(), {"byte 44", "Stokes vectors", "must be 0"});
 
     Damaged speos("own_3rays_speos.ray");
     check_says(speos.put(0, 0.0f).complaint(), {"byte 0", "flux is 0 W"});
     speos.put(0, 1.0f).bytes.resize(120);
     check_says(speos.complaint(), {"no ray file begins so"});
+}
+
+TEST_CASE("ray files: LightTools of version 3, and of the far field") {
+    Damaged third("own_3rays_lighttools_watt.ray");
+    third.put(4, uint32_t(3)).bytes.insert(44, std::string(4, '\0'));
+    check_three_rays(third.read(), 1, 0);
+
+    // Without positions: rays start at the origin.
+    Damaged far("own_3rays_lighttools_watt.ray");
+    far.put(16, int32_t(1)).put(28, 1.0f).put(32, -2.0f);
+    for (size_t i = 0; i < 3; ++i) far.bytes.erase(44 + 16 * i, 12);
+    const RayFile file = far.read(), near = read_ray_file(own("own_3rays_lighttools_watt.ray"));
+    REQUIRE(file.rays.size() == 3);
+    CHECK(file.warnings.empty());
+    for (size_t i = 0; i < 3; ++i) {
+        CHECK(file.rays[i].position == glm::vec3(1, -2, 0));
+        CHECK(file.rays[i].direction == near.rays[i].direction);
+        CHECK(file.rays[i].flux == near.rays[i].flux);
+    }
+}
+
+TEST_CASE("ray files: polarization, of TM-25 as Stokes parameters, of Speos as ellipses") {
+    const TemporaryFolder folder;
+    const auto path = folder / "polarized.tm25ray";
+    const auto with = [&](const glm::vec3& stokes, const glm::vec3& axis) {
+        RayFile file = read_ray_file(own("own_3rays_flux.tm25ray"));  // the first goes along z
+        file.polarization = {{stokes, axis}, {{0, 0, 0}, {0, 0, 0}}, {{0, 0, -1}, {0, 0, 0}}};
+        write_tm25(path, file);
+    };
+    with({0.6f, 0, 0.8f}, {0, 2, 5});
+    const RayFile good = read_ray_file(path);
+    CHECK(good.warnings.empty());
+    CHECK(good.polarization[0] == RayPolarization{{0.6f, 0, 0.8f}, {0, 2, 5}});
+    with({0.9f, 0, 0.9f}, {1, 0, 0});
+    check_says(complaint(path), {"ray 1", "Stokes parameters (0.9, 0, 0.9)", "at most 1 together"});
+    with({NAN, 0, 0}, {1, 0, 0});
+    check_says(complaint(path), {"ray 1", "Stokes parameters (nan, 0, 0)"});
+    with({0, 0.5f, 0}, {0, 0, 1});
+    check_says(complaint(path), {"ray 1", "axis of polarization (0, 0, 1)", "must lie across it"});
+
+    Damaged speos("own_3rays_speos.ray");
+    const std::string plain = speos.bytes.substr(28);
+    speos.bytes.resize(28);
+    const float ellipses[3][5] = {{0, 1, 0, 0, 0}, {0, 1, 0, 1, 1}, {0.70710678f, -0.70710678f, 0, 0.5f, 0}};
+    for (size_t i = 0; i < 3; ++i)
+        speos.bytes += plain.substr(32 * i, 32) + std::string(reinterpret_cast<const char*>(ellipses[i]), 20);
+    const RayFile file = speos.read();
+    CHECK(file.warnings.empty());
+    check_three_rays(file, 1, 0);
+    REQUIRE(file.polarization.size() == 3);
+    CHECK(file.polarization[0] == RayPolarization{{1, 0, 0}, {0, 1, 0}});
+    CHECK(file.polarization[1] == RayPolarization{{0, 0, -1}, {0, 1, 0}});
+    CHECK(file.polarization[2].stokes == glm::vec3(0.6f, 0, 0.8f));
 }
 
 TEST_CASE("ray files: what is written as TM-25 reads back to the same") {

@@ -9,8 +9,10 @@
 #include "host/render/automatic.h"
 #include "tests/renders/agreement_scenes.h"
 #include "tests/renders/algorithm_comparison.h"
+#include "tests/renders/sheets.h"
 #include "tests/support/source_path.h"
 #include "tests/support/statistics.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 using nlohmann::json;
@@ -124,6 +126,61 @@ TEST_CASE("rays: lumens are those of the file or of `flux`, whatever the color")
                              {{"color", {{"wavelengths", {554, 555, 556}}, {"values", {0, 1, 0}}}}}, 2, 0.1);
     CHECK(watts.power == doctest::Approx(683).epsilon(1e-4));
     CHECK(watts.warnings.size() == 1);
+}
+
+// Through sheets a ray is let pass as a beam is whose Stokes vector is said in the scene, however the node
+// stands.
+TEST_CASE("rays: polarization of a file acts as that of a lamp, each ray's its own") {
+    const Place askew = {{0.1, 1.9, -0.05}, {0.5, 0.1, -0.3, 0.8}};
+    const TemporaryFolder folder;
+    const auto seen = [&](const std::vector<RayPolarization>& rays, const json& beam, Algorithm algorithm) {
+        SceneBuilder s;
+        if (beam.is_null()) {
+            RayFile file;
+            file.unit = RayFile::Unit::watt, file.stated_lumens = 100;
+            for (const RayPolarization& p : rays) {
+                const float place = float(file.rays.size());
+                file.rays.push_back({{place, -place, 0}, {0, 0, -1}, 1});
+                file.lumens.push_back(100 / float(rays.size()));
+                file.polarization.push_back(p);
+            }
+            const std::string path = (folder / "polarized.tm25ray").string();
+            write_tm25(path, file);
+            s.placed("light", {{"class", "rays"}, {"file", path}}, askew);
+        } else {
+            s.placed("light", {{"class", "collimated"}, {"radius", 0.01}, {"power", 100}, {"stokes", beam}},
+                     askew);
+        }
+        // A quarter-wave plate, then a polarizer, across the way.
+        const glm::dquat turn = glm::normalize(glm::dquat(0.8, 0.5, 0.1, -0.3));
+        const glm::dvec3 way = turn * glm::dvec3(0, 0, -1), x = turn * glm::dvec3(1, 0, 0);
+        s.rectangle(0.2, 0.2, s.surface(wave_plate(0.3, 1)), facing(askew.position + 0.1 * way, way, x));
+        s.rectangle(0.2, 0.2, s.surface(polarizer(1.1)), facing(askew.position + 0.2 * way, way, x));
+        add_meter(s, 0.2, facing(askew.position + 0.3 * way, -way, x));
+        Scene scene = compile_test_scene(s.import());
+        CHECK(scene.features.polarization);
+        CHECK(scene.power == doctest::Approx(100).epsilon(1e-5));
+        return measured(scene, algorithm, 16, 64).mean * 0.04;
+    };
+    const glm::vec3 y(0, 1, 0), diagonal(1, -1, 7);
+    for (const Algorithm algorithm : both_ways) {
+        CAPTURE(algorithm_name(algorithm));
+        const auto alike = [&](const RayPolarization& ray, const json& stokes) {
+            const double beam = seen({}, stokes, algorithm), rays = seen({ray}, {}, algorithm);
+            CAPTURE(stokes.dump());
+            CHECK(rays == doctest::Approx(beam).epsilon(1e-4));
+            CHECK(std::abs(rays - 50) > 5);
+            return rays;
+        };
+        alike({{1, 0, 0}, {1, 0, 0}}, {1, 1, 0, 0});
+        alike({{0.8f, 0, 0}, y}, {1, -0.8, 0, 0});
+        alike({{0.8f, 0, 0}, diagonal}, {1, 0, 0.8, 0});
+        const double right = alike({{0, 0, 1}, {}}, {1, 0, 0, 1}),
+                     left = alike({{0, 0, -1}, {}}, {1, 0, 0, -1});
+        CHECK(right + left == doctest::Approx(100).epsilon(1e-4));
+        CHECK(seen({{{0, 0, 1}, {}}, {{0, 0, -1}, {}}, {{0, 0, -1}, {}}, {{0, 0, -1}, {}}}, {}, algorithm) ==
+              doctest::Approx(0.25 * right + 0.75 * left).epsilon(1e-4));
+    }
 }
 
 TEST_CASE("collimated: within the beam the illuminance is power / (pi radius²), near and far") {
