@@ -76,3 +76,33 @@ TEST_CASE("a scene that holds one that holds it is refused") {
     b.document["nodes"][1]["extensions"]["ETD_optics"] = {{"element", subscene(0)}};
     CHECK(import_error(b.glb()).find("scene 0 holds itself") != std::string::npos);
 }
+
+TEST_CASE("an element of microstructure is a sheet in a box that it fills") {
+    const json sheet = {{"class", "microstructure"},
+                        {"size", {0.4, 0.2}},
+                        {"pitch", {0.01, 0.01}},
+                        {"radius", 0.002},
+                        {"depth", 0.001},
+                        {"scale", 2},
+                        {"density", 0.5},
+                        {"operation", "remove"}};
+    const SceneDescription s = with_element(sheet).import();
+    REQUIRE(s.shapes.size() == 1);  // the ball is in no scene that is shown
+    CHECK(s.shapes[0].content == 1);
+    CHECK(s.shapes[0].object.class_name == "microstructure");
+    CHECK(s.shapes[0].object.parameters["radius"] == 0.004);
+    CHECK(s.shapes[0].object.parameters["density"] == 0.5);
+    REQUIRE(s.contents.at(0).boundary.size() == 1);
+    float low = 0, high = 0, wide = 0;
+    for (const glm::vec3& p : s.meshes.at(s.contents[0].boundary[0].mesh).positions)
+        low = std::min(low, p.z), high = std::max(high, p.z), wide = std::max(wide, p.x);
+    CHECK(wide == 0.2f);
+    CHECK(low < -0.002f);
+    CHECK(high > 0);
+
+    json cells = sheet;
+    cells["cell"] = 1;
+    CHECK(import_error(with_element(cells).glb()) ==
+          "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element/cell: "
+          "cells hold no scenes in this version; allowed: a shape");
+}
