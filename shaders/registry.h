@@ -60,7 +60,8 @@
     X(15, ColorFilter, color_filter)                 \
     X(16, LcCell, lc_cell)                           \
     X(17, MuellerSheet, mueller)                     \
-    X(18, MuellerTableSurface, mueller_table)
+    X(18, MuellerTableSurface, mueller_table)        \
+    X(19, Grating, grating)
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)               \

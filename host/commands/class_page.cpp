@@ -90,6 +90,7 @@ std::string type_name(const Parameter& p) {
         {"MeasuredRef", "file"},
         {"MuellerMatrix", "16 numbers"},
         {"MuellerTableRef", "file"},
+        {"GratingOrders", "list"},
         {"PhotometryRef", "file"},
         {"RayFileRef", "file"},
         {"WorldPoint", "point"},

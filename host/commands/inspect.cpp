@@ -90,8 +90,8 @@ int inspect_command(const InspectOptions& options) {
             "no texture or alpha makes parts of lights brighter than others");
     feature(f.spectral, "spectral", "a value is a spectrum: paths carry four wavelengths",
             "no value is a spectrum: paths carry three channels");
-    feature(f.dispersion, "dispersion", "a refractive index depends on the wavelength",
-            "refractive indices are the same at all wavelengths");
+    feature(f.dispersion, "dispersion", "a refractive index or a grating parts wavelengths",
+            "all wavelengths go the same ways");
     feature(f.polarization, "polarization", "rays carry Stokes vectors",
             "no class polarizes on purpose: what reflection and refraction do to polarization is neglected "
             "(--polarization on)");

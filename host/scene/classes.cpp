@@ -73,6 +73,7 @@ void read_class(const std::string& text, ClassInfo& info) {
     if (std::regex_search(info.summary, unit, std::regex(R"(A pixel: (\S+)\.)"))) info.pixel_unit = unit[1];
     info.has_general_mueller = text.find("is_general") != std::string::npos;
     info.has_body_mueller = text.find("set_body(") != std::string::npos;
+    info.disperses = std::regex_search(text, std::regex(R"(#define \w+_DISPERSES\b)"));
     info.polarizes = std::regex_search(text, std::regex(R"(#define \w+_POLARIZES\b)"));
 }
 

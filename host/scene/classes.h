@@ -64,6 +64,7 @@ struct ClassInfo {
          on_surface = false;           // of receivers (interfaces/receiver.glsl)
     std::string pixel_unit;            // of receivers that measure; empty = a camera
     bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization
+    bool disperses = false;            // NAME_DISPERSES: directions depend on the wavelength
     bool has_body_mueller = false;     // light leaves its body (shaders/features/body_mueller.glsl)
     bool has_general_mueller = false;  // its matrices are not of two blocks (shaders/lib/stokes.glsl)
     // Filled by reflection, at first use:

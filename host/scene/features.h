@@ -43,7 +43,7 @@ struct Features {
     bool receptor_shapes = false;  // … is no plane (shaders/features/receptor_shapes.glsl)
     bool receptors = false;        // … has a receptor, which is made of this material:
     uint32_t receptor_material = 0;
-    bool dispersion = false;           // some refractive index depends on the wavelength
+    bool dispersion = false;           // some direction depends on the wavelength
     uint32_t spectrum_count = 0;       // room for so many
     bool independent_samples = false;  // hashes take the place of Sobol' points
     bool light_tree = false;

@@ -151,6 +151,8 @@ void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value
     } else if (type == "MuellerTableRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of a .pbsdf file", place);
         store(record, at, resolver.mueller_table(value.get<std::string>()));
+    } else if (type == "GratingOrders") {
+        store(record, at, resolver.grating(value, where));
     } else {
         fail_input("{}: the class's member {} has type {}, which no parameter can fill", place, p.member.name,
                    type);

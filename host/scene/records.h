@@ -35,6 +35,11 @@ struct SpectrumRef {
     uint32_t table = 0;  // index into Scene::spectra
 };
 
+// Twin of struct GratingOrders in shaders/surfaces/grating.glsl.
+struct GratingOrders {
+    uint32_t first = 0, count = 0;  // rows (host/scene/grating_orders.h)
+};
+
 // What typed members of a record refer to.
 struct RecordResolver {
     const SceneDescription& scene;
@@ -55,6 +60,9 @@ struct RecordResolver {
     // Index of the table of Mueller matrices in a file.
     std::function<uint32_t(const std::filesystem::path& file)> mueller_table =
         [](const std::filesystem::path&) { return 0u; };
+    // The orders of a grating and what each of them carries.
+    std::function<GratingOrders(const nlohmann::json& value, const std::string& where)> grating =
+        [](const nlohmann::json&, const std::string&) { return GratingOrders{}; };
     std::function<PhotometryRef(const std::filesystem::path& file)> photometry =
         [](const std::filesystem::path&) { return PhotometryRef{}; };
     // Primitive of the shape at the node of the light that is being added.

@@ -39,6 +39,9 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     };
     resolver_.measured = [this](const std::filesystem::path& file) { return add_measured(file); };
     resolver_.mueller_table = [this](const std::filesystem::path& file) { return add_mueller_table(file); };
+    resolver_.grating = [this](const nlohmann::json& value, const std::string& where) {
+        return append(grating_orders_, read_grating_orders(value, in_, where, resolver_.spectrum));
+    };
     resolver_.own_shape = [this](const std::string& where) { return own_shape(where); };
     resolver_.photometry = [this](const std::filesystem::path& file) { return add_photometry(file); };
     resolver_.watched = [this](const std::string& mesh, const std::string& where) {

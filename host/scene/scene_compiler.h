@@ -4,6 +4,7 @@
 #pragma once
 #include "host/lights/emission_map.h"
 #include "host/lights/light_tree.h"
+#include "host/scene/grating_orders.h"
 #include "host/scene/scene.h"
 #include "host/scene/scene_memory.h"
 
@@ -147,6 +148,7 @@ class SceneCompiler {
     std::vector<glm::dmat4> grid_placements_;  // device_from_lattice
     bool uses_measured_ = false, has_sky_ = false;
     std::vector<MuellerTable> mueller_tables_;
+    std::vector<GratingOrder> grating_orders_;
     SpectralValue surrounding_;  // index of the medium whose phase function is being added
     std::vector<std::shared_ptr<const MieTable>> mie_tables_;
     std::vector<uint32_t> watched_words_;  // of meters on surfaces

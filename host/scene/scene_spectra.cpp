@@ -48,10 +48,14 @@ void SceneCompiler::scale_emission(MaterialRecord& record, float scale) {
 void SceneCompiler::choose_color() {
     bool has_tables = out_.features.scattering && !mie_tables_.empty();
     for (const auto& [value, kind] : spectra_) has_tables |= value.table.has_value();
+    bool disperses = false;
+    for (const auto& [interface, classes] : out_.classes)
+        for (const ClassInfo* info : classes) disperses |= info->disperses;
     out_.features.spectral =
         options_.color == ColorMode::spectral ||
-        (options_.color == ColorMode::automatic && (has_tables || options_.spectral_image));
+        (options_.color == ColorMode::automatic && (has_tables || disperses || options_.spectral_image));
     if (!out_.features.spectral) return;
+    out_.features.dispersion = disperses;
     const double radiance_unit = even_luminance();
     for (const auto& [value, kind] : spectra_) {
         out_.features.dispersion |=

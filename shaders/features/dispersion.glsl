@@ -1,4 +1,4 @@
-// Where wavelengths part a path goes on with one of the four alone, its hero, which stands for all (Wilkie et al. 2014, section 3.1,
+// Where wavelengths part, at a dispersive index or a grating, a path goes on with one of the four alone, its hero, which stands for all (Wilkie et al. 2014, section 3.1,
 // with delta events: the others could not have gone this way). Which one each path draws on its own, or a pass would have one hue:
 // pixels keep theirs, counted from the first wavelength of the pass, which goes round (host/spectra/wavelengths.h).
 //

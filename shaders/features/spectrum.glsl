@@ -144,6 +144,10 @@ float of_hero(Spectrum s) { return s[hero]; }
 #define of_hero(s) (s).x
 #endif
 
+// Of what sends each wavelength another way: without wavelengths all go as that of the d line, at which indices are taken, too.
+Spectrum parting_wavelengths() { return SPECTRAL == 1 ? lane_wavelengths() : Spectrum(587.6); }  // nm
+float of_parting(Spectrum s) { return SPECTRAL == 1 ? of_hero(s) : brightness(s); }                // what then counts of a spectrum
+
 bool is_black(Spectrum s) { return max_component(s) <= 0.0; }
 
 // Exactly x where all lanes are x.

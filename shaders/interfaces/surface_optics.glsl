@@ -22,6 +22,9 @@
 //                                                                   what passes straight on stays as it is
 //   NAME_POLARIZES, a macro, where light is polarized on purpose: scenes with the class carry polarization unless told otherwise
 //
+//   NAME_DISPERSES, a macro, where directions depend on the wavelength (EVENT_PARTS): scenes with the class are rendered in wavelengths
+//                                                                   unless told otherwise
+//
 // wo is the direction where the path comes from, wi where it goes. c.importance tells the transport direction: false
 // carries radiance (backward rays: transmission scales by (ior on the side of wo / ior on the side of wi)², Veach 1997 eq. 5.12), true carries power.
 // Corrections for shading normals are made by the callers (lib/scattering.glsl), once for all classes.
@@ -60,6 +63,7 @@ const uint EVENT_REFLECT = 1u;
 const uint EVENT_TRANSMIT = 2u;
 const uint EVENT_DELTA = 4u;     // pdf is the probability of the discrete direction, not a density
 const uint EVENT_STRAIGHT = 8u;  // passes on unscattered (the part that `transparency` gives); implies DELTA | TRANSMIT
+const uint EVENT_PARTS = 256u;   // the direction is that of the hero's wavelength alone; with DELTA
 
 struct SurfacePair {
     Spectrum value;     // f * |cos wi|, 1/sr

@@ -55,6 +55,7 @@ bool follow_sample(inout Path path, SurfacePoint p, ScatteringPoint s, SurfaceEv
 #else
     event.next_pdf_reverse *= frame_probability(s, direction, -path.direction);
 #endif
+    part_at_interface(path, (b.event & EVENT_PARTS) != 0u);
     path.throughput *= b.weight;
     polarize(path, s, event.next_mueller, direction);
     go_through(path, s, direction, straight);

@@ -7,6 +7,7 @@
 
 #include "host/measured/mueller_table.h"
 #include "host/scene/features.h"
+#include "host/scene/grating_orders.h"
 #include "host/scene/records.h"
 #include "tests/support/source_path.h"
 
@@ -78,6 +79,10 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
         tables.back().place_rgb = read.place.rgb;
         return uint32_t(tables.size() - 1);
     };
+    std::vector<GratingOrder> orders;
+    resolver.grating = [&](const nlohmann::json& value, const std::string& where) {
+        return append(orders, read_grating_orders(value, scene, where, resolver.spectrum));
+    };
     RecordBuffer records;
     for (const nlohmann::json& p : parameters)
         records.add(*info, fill_record(*info, {class_name, p, "/surface"}, std::nullopt, resolver));
@@ -97,6 +102,7 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     mueller_numbers_ = create_buffer(device, matrices.numbers, "Mueller numbers");
     mueller_intensities_ = create_buffer(device, matrices.intensities, "Mueller intensities");
     mueller_ratios_ = create_buffer(device, matrices.ratios, "Mueller ratios");
+    grating_orders_ = create_buffer(device, orders, "grating orders");
     samples_ = Buffer(device, max_count * sizeof(SurfaceSample), "surface samples");
     answers_ = Buffer(device, sizeof(glm::vec4), "surface answers");
     pairs_ = Buffer(device, max_count * sizeof(DirectionPair), "direction pairs");
@@ -117,7 +123,8 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
                       {"MuellerTables", &mueller_tables_},
                       {"MuellerNumbers", &mueller_numbers_},
                       {"MuellerIntensities", &mueller_intensities_},
-                      {"MuellerRatios", &mueller_ratios_}};
+                      {"MuellerRatios", &mueller_ratios_},
+                      {"GratingOrderRows", &grating_orders_}};
     sample_ = probe_kernel(sources, "sample_surface.comp", table);
     evaluate_ = probe_kernel(sources, "evaluate_surface.comp", table);
     polarize_ = probe_kernel(sources, "polarize_surface.comp", table);
