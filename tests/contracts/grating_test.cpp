@@ -46,8 +46,8 @@ std::vector<Order> orders_of(SurfaceProbe& probe, size_t record, const SurfaceSu
     std::vector<Order> found;
     for (const SurfaceSample& s : probe.sample(record, at, wo, 8192, 5).samples) {
         if (!s.event) continue;
-        CHECK((s.event & event_delta) != 0);
-        CHECK(glm::length(s.wi) == doctest::Approx(1).epsilon(1e-6));
+        if (!(s.event & event_delta) || std::abs(glm::length(s.wi) - 1) > 1e-6f)
+            FAIL("no direction of an order");
         const auto same = [&](const Order& o) { return glm::distance(o.wi, s.wi) < 1e-4f; };
         if (std::none_of(found.begin(), found.end(), same))
             found.push_back({s.wi, double(s.weight.x) * s.pdf, (s.event & event_reflect) != 0});
@@ -241,7 +241,7 @@ TEST_CASE("orders that make no sense are told in one line") {
         CHECK(text.find('\n') == std::string::npos);
     };
     const json one = {{"order", 1}, {"reflected", 0.5}};
-    CHECK(message({one}) == "");
+    CHECK(message(json::array({one})) == "");
     CHECK(message({{{"order", 0}, {"transmitted", 1}}, {{"order", 1}, {"reflected_below", 0}}}) == "");
     tells(0.5, "/orders: allowed: a list of");
     tells(json::array(), "/orders: allowed: a list of");
