@@ -88,7 +88,8 @@ int inspect_command(const InspectOptions& options) {
     feature(f.twins, "twins", "two sheets at one place face apart", "no two sheets at one place face apart");
     feature(f.emission_maps, "emission maps", "textures or alpha make parts of lights brighter than others",
             "no texture or alpha makes parts of lights brighter than others");
-    feature(f.spectral, "spectral", "a value is a spectrum: paths carry four wavelengths",
+    feature(f.spectral, "spectral",
+            "a value is a spectrum, or there is a grating: paths carry four wavelengths",
             "no value is a spectrum: paths carry three channels");
     feature(f.dispersion, "dispersion", "a refractive index or a grating parts wavelengths",
             "all wavelengths go the same ways");

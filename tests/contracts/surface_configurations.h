@@ -182,16 +182,18 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
                                          {{"order", -1}, {"reflected", 0.15}, {"transmitted", 0.1}},
                                          {{"order", 2}, {"transmitted", 0.1}},
                                          {{"order", -2}, {"transmitted", 0.1}}};
-        const nlohmann::json blazed = {{{"order", 1}, {"reflected", 0.7}, {"reflected_below", 0.1}},
-                                       {{"order", -3}, {"reflected", {0.1, 0.2, 0.05}}, {"transmitted", 0.1}}};
-        return {C{"lossless", {{"period", 1.3e-6}, {"axis", 0.4}, {"orders", lossless}}, 1, 1, 1.0},
-                C{"lossless, of all but 0 evanescent", {{"period", 1e-7}, {"orders", lossless}}, 1, 1, 1.0},
-                C{"lossless, on glass", {{"period", 1.3e-6}, {"axis", 2}, {"orders", lossless}}, 1, 1.5f, 1.0},
-                C{"absorbing what is evanescent",
-                  {{"period", 1.3e-6}, {"orders", lossless}, {"evanescent", "absorbed"}},
-                  1.33f,
-                  1},
-                C{"blazed", {{"period", 2e-6}, {"axis", -1}, {"orders", blazed}}, 1, 1.5f}};
+        const nlohmann::json blazed = {
+            {{"order", 1}, {"reflected", 0.7}, {"reflected_below", 0.1}},
+            {{"order", -3}, {"reflected", {0.1, 0.2, 0.05}}, {"transmitted", 0.1}}};
+        return {
+            C{"lossless", {{"period", 1.3e-6}, {"axis", 0.4}, {"orders", lossless}}, 1, 1, 1.0},
+            C{"lossless, of all but 0 evanescent", {{"period", 1e-7}, {"orders", lossless}}, 1, 1, 1.0},
+            C{"lossless, on glass", {{"period", 1.3e-6}, {"axis", 2}, {"orders", lossless}}, 1, 1.5f, 1.0},
+            C{"absorbing what is evanescent",
+              {{"period", 1.3e-6}, {"orders", lossless}, {"evanescent", "absorbed"}},
+              1.33f,
+              1},
+            C{"blazed", {{"period", 2e-6}, {"axis", -1}, {"orders", blazed}}, 1, 1.5f}};
     }
     if (name == "mueller_table") return mueller_files();
     if (name == "color_filter") return {C{"red", {{"transmittance", {0.9, 0.2, 0.05}}}}};

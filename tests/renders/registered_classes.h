@@ -14,8 +14,9 @@ inline nlohmann::json surface_of(const std::string& name) {
     if (name == "mueller_table") surface["file"] = "metal.pbsdf";
     if (name == "color_filter") surface["transmittance"] = 0.5;
     if (name == "grating")
-        surface["period"] = 1e-6, surface["orders"] = {{{"order", 1}, {"reflected", 0.5}, {"transmitted", 0.2}},
-                                                       {{"order", 0}, {"transmitted", 0.3}}};
+        surface["period"] = 1e-6,
+        surface["orders"] = {{{"order", 1}, {"reflected", 0.5}, {"transmitted", 0.2}},
+                             {{"order", 0}, {"transmitted", 0.3}}};
     if (name == "mueller") surface["matrix"] = {0.5, 0, 0, 0.5, 0, 0, 0, 0, 0, 0, 0, 0, 0.5, 0, 0, 0.5};
     return surface;
 }
