@@ -223,6 +223,24 @@ TEST_CASE("what a grating's evanescent orders would carry is absorbed, or order 
     CHECK(sum(orders_of(glass, 0, {1, 1.5f, true}, within)) == doctest::Approx(1).epsilon(1e-5));
 }
 
+TEST_CASE("a grating reflects light from below as was said of that, towards the same side") {
+    const json orders = {{{"order", 1}, {"reflected", 0.5}, {"reflected_below", 0.1}},
+                         {{"order", 0}, {"reflected", 0.2}}};
+    ClassRegistry classes = registry();
+    SurfaceProbe probe(classes, "grating",
+                       {{{"period", line / 0.6}, {"axis", -90 * degree}, {"orders", orders}}});
+    for (const float up : {1.f, -1.f}) {
+        CAPTURE(up);
+        const auto found = orders_of(probe, 0, {1, 1, true}, {0, 0, up});
+        REQUIRE(found.size() == 2);
+        for (const Order& o : found) {
+            const bool zero = o.wi.x < 0.3f;
+            CHECK(glm::distance(o.wi, zero ? glm::vec3(0, 0, up) : glm::vec3(0.6f, 0, 0.8f * up)) < 1e-5f);
+            CHECK(o.part == doctest::Approx(zero ? 0.2 : up > 0 ? 0.5 : 0.1).epsilon(1e-5));
+        }
+    }
+}
+
 TEST_CASE("orders that make no sense are told in one line") {
     const SceneDescription scene;
     const auto message = [&](const json& orders) -> std::string {
