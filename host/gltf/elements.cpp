@@ -167,8 +167,8 @@ void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
     // In the digits of floats, so that what turning leaves of them makes no two scales of one.
     glm::dmat3 scale = glm::dmat3(glm::mat3(parts.rest));
     for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < c; ++r)
-            if (std::abs(scale[c][r]) < 1e-9 * std::abs(scale[c][c])) scale[c][r] = 0;
+        for (int r = 0; r < 3; ++r)
+            if (r > c || std::abs(scale[c][r]) < 1e-9 * std::abs(scale[c][c])) scale[c][r] = 0;
     import.elements.push_back({scene, scale, at});
 }
 

@@ -35,8 +35,8 @@ enum EventBits : uint32_t {
     escape = 32,
     roulette = 64,
     bend = 128,
-    enter = 256,
-    leave = 512
+    enter = 1024,
+    leave = 2048
 };
 
 constexpr uint32_t most_paths = 4096;  // of a dispatch

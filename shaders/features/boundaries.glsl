@@ -19,13 +19,21 @@ bool starts_within(Hit hit, SurfacePoint p, vec3 direction) {
     return attributes_index(primitives[hit.primitive].attributes) != OWN_BOUNDARY && dot(direction, p.geometric_normal) > 0.0;
 }
 
+// By how much rays have gone on from surfaces that lie on a boundary, at most: they begin so much further back behind it.
+float boundary_margin(vec3 origin, uint element) {
+    vec3 a = abs(origin) + abs(elements[element].parent_from_local[3]);
+    return 64.0 * EPSILON * max(a.x, max(a.y, a.z));
+}
+
 // A ray passes the boundary at p. It goes on from so little before that it meets, in the other frame, what lies on the boundary.
 // Returns the way to that frame; the origin is that in the old one.
 mat4x3 cross_boundary(inout vec3 origin, vec3 direction, inout uint location, Hit hit, SurfacePoint p) {
     uint leads_to = attributes_index(primitives[hit.primitive].attributes);
     bool leaves = leads_to == OWN_BOUNDARY;
     uint element = leaves ? element_at(location) : leads_to;
-    if (!starts_within(hit, p, direction)) {
+    if (starts_within(hit, p, direction)) {
+        origin -= boundary_margin(origin, element) * direction;
+    } else {
         vec3 a = abs(p.position) + abs(origin) + abs(elements[element].parent_from_local[3]), n = p.geometric_normal;
         float margin = dot(abs(n), p.error) + 32.0 * EPSILON * max(a.x, max(a.y, a.z));
         margin /= max(abs(dot(direction, n)), 1e-3);
@@ -61,9 +69,11 @@ void pass_boundary(inout Path path, Spectrum carried, Hit hit, SurfacePoint p) {
     move_to_frame(path, cross_boundary(path.origin, path.direction, path.location, hit, p));
 }
 
-// The ray has found no way out: rounding has let it pass an edge. It is outside already.
+// The ray has found no way out: it is outside already, since it has left a surface that lies on the boundary, or by rounding at an
+// edge.
 void miss_boundary(inout Path path) {
     uint element = element_at(path.location);
+    path.origin -= boundary_margin(path.origin, element) * path.direction;
     move_to_frame(path, elements[element].parent_from_local);
     path.location = element | JUST_LEFT | LEFT_BY_CHANCE;
 }

@@ -1,6 +1,6 @@
 // A rectangle in the xy plane around the origin, facing +z, with small bumps or dents of one shape in cells side by side: the
 // dots of a light guide, an array of lenses, a prism film. Which cell holds one, where and how large follows from the cell's number,
-// so that any number of them takes no memory. Cells lie around the middle; what is left of the rectangle beside them is plain. Seen
+// so that any number of them takes no memory. Cells lie around the middle; what is left of the rectangle beside them is plain. Ridges are open at their ends. Seen
 // from +z u runs to the right (+x), v down (-y).
 //
 // Example:

@@ -21,13 +21,13 @@ layout(push_constant) uniform Push {
 #include "interfaces/light_source.glsl"
 #include "features/boundaries.glsl"
 #include "features/faces.glsl"
+#include "features/light_selection.glsl"
 #include "features/views.glsl"
 #include "lib/materials.glsl"
 #include "lib/primitives.glsl"
 #include "lib/sampler.glsl"
 #include "lib/traversal.glsl"
 
-layout(scalar, set = 0) readonly buffer Lights { uint lights[]; };
 layout(scalar, set = 0) writeonly buffer StartMedia { Surroundings start_media[]; };
 
 const uint RAYS = 64u;

@@ -23,8 +23,8 @@ const uint RECORDED_EMISSION = 16u;
 const uint RECORDED_ESCAPE = 32u;
 const uint RECORDED_ROULETTE = 64u;  // the event was the last one by Russian roulette or the depth limit
 const uint RECORDED_BEND = 128u;     // a point of a bent ray
-const uint RECORDED_ENTER = 256u;    // an optical element
-const uint RECORDED_LEAVE = 512u;    // … again
+const uint RECORDED_ENTER = 1024u;    // an optical element
+const uint RECORDED_LEAVE = 2048u;    // … again
 struct DeviceVertex {
     vec3 position;
     uint event;

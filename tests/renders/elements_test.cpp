@@ -15,7 +15,7 @@ SceneBuilder room(bool with_lamp = true) {
     SceneBuilder s;
     add_box(s, {2, 2, 2}, s.lambertian({0.7, 0.7, 0.7}), true, at(0, 0, 0));
     add_box(s, {0.5f, 0.7f, 0.5f}, s.lambertian({0.7, 0.2, 0.1}), false, at(-0.6, -0.65, -0.4));
-    if (with_lamp) s.rectangle(0.5, 0.5, s.black_emitter({10, 9, 8}), facing_down(0, 0.96, 0));
+    if (with_lamp) s.rectangle(1.2, 1.2, s.black_emitter({3, 2.5, 2}), facing_down(0, 0.96, 0));
     s.perspective(0.9, at(0, 0, 0.97));
     s.medium("glass", {{"ior", 1.5}, {"absorption", {0.2, 0.4, 1}}});
     return s;
@@ -102,12 +102,15 @@ TEST_CASE("a point lamp within an element") {
         const auto lamp = [&](const Place& place) {
             s.light({{"type", "point"}, {"intensity", 0.2}}, place);
         };
+        const auto place = [&](double x, double y, double z) {
+            return element ? at(x, y, z) : at(x, y + 0.8, z + 0.85);
+        };
         const int white = s.lambertian({0.8, 0.8, 0.8});
         const auto fill = [&] {
-            add_box(s, {0.1f, 0.1f, 0.1f}, white, false, at(0.1, 0, 0.05)), lamp(at(-0.1, 0, 0));
+            add_box(s, {0.1f, 0.1f, 0.1f}, white, false, place(0.1, 0, 0.05)), lamp(place(-0.1, 0, 0));
         };
         if (element)
-            s.placed("element", subscene(s.scene(fill)), at(0, 0, 0));
+            s.placed("element", subscene(s.scene(fill)), at(0, 0.8, 0.85));
         else
             fill();
         return s.import();
