@@ -334,7 +334,7 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
             text += fmt::format("#define {}_ON_SURFACE {:d}\n", info->prefix, info->on_surface);
             if (!info->on_surface)
                 text += fmt::format(
-                    "#define {0}_at_surface(r, primitive, front, leaves) no_receiver_sample()\n"
+                    "#define {0}_at_surface(r, primitive, point, front, leaves) no_receiver_sample()\n"
                     "#define {0}_face(r, film, front) 0u\n",
                     info->prefix);
             if (!info->records_rays) text += fmt::format("#define {}_RECORDS_RAYS 0\n", info->prefix);

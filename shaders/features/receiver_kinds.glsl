@@ -47,10 +47,10 @@ bool on_surface(uint ref) {
     return result;
 }
 
-ReceiverSample receiver_at_surface(uint ref, uint primitive, bool front, bool leaves) {
+ReceiverSample receiver_at_surface(uint ref, uint primitive, vec3 point, bool front, bool leaves) {
     ReceiverSample result = no_receiver_sample();
     switch (record_tag(ref)) {
-#define CASE(tag, Struct, name) case tag: result = name##_at_surface(name##_record(record_index(ref)), primitive, front, leaves); break;
+#define CASE(tag, Struct, name) case tag: result = name##_at_surface(name##_record(record_index(ref)), primitive, point, front, leaves); break;
         RECEIVER_CLASSES(CASE)
 #undef CASE
     }

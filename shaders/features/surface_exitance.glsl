@@ -9,7 +9,7 @@ bool leave_surface(inout Path path, inout ShadowRay shadow) {
     if (!leaves_watched(path)) return false;
     uint v = leaving_view(path);
     View view = views[v];
-    ReceiverSample r = receiver_at_surface(view.receiver, path.leaves.x >> 1, (path.leaves.x & 1u) != 0u, true);
+    ReceiverSample r = receiver_at_surface(view.receiver, path.leaves.x >> 1, path.origin, (path.leaves.x & 1u) != 0u, true);
     bring_arriving(path, view, r, 1.0, 0.0, shadow);
     path.leaves.y = v + 1u;
     if (leaving_view(path) == NO_RECORD) leave_nothing(path);

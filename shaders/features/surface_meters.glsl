@@ -28,7 +28,7 @@ vec2 within_pixel(View view, vec2 u) { return on_surface(view.receiver) ? clamp(
 
 #if FORWARD
 bool is_watched(View view, uint primitive) {
-    return on_surface(view.receiver) && receiver_at_surface(view.receiver, primitive, true, false).pdf > 0.0;
+    return on_surface(view.receiver) && receiver_at_surface(view.receiver, primitive, vec3(0), true, false).pdf > 0.0;
 }
 
 // The view that catches the path where it has hit a triangle; NO_RECORD = none, or it has done so.
@@ -42,7 +42,7 @@ uint watching_view(Path path, Hit hit) {
 // Where it is caught: in the picture.
 ReceiverSample caught_at_surface(Path path, View view, Hit hit) {
     bool front = dot(path.direction, triangle_normal(primitives[hit.primitive])) < 0.0;
-    return receiver_at_surface(view.receiver, hit.primitive, front, false);
+    return receiver_at_surface(view.receiver, hit.primitive, path.origin + hit.t * path.direction, front, false);
 }
 
 // How far above what the path has hit it is sure to hit it again, m.

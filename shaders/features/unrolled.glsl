@@ -1,6 +1,7 @@
 // How rays find what they hit: scenes of few primitives come as straight code (host/geometry/unrolled_traversal.h), others as a
 // hierarchy that is walked. Either way there are find_hit(), find_occlusion(), and a Traversal that is begun and stepped until it is
 // done, for kernels whose lanes go on with the next ray as one ends.
+#include "features/elements.glsl"
 #include "features/hit_order.glsl"
 
 #if HAS_UNROLLED_TRAVERSAL

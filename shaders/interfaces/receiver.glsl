@@ -16,8 +16,8 @@
 //                               (features/receptors.glsl)
 //   ReceiverSample NAME_far(R r, vec3 direction, float film_aspect)   what light that leaves the scene along `direction` adds: the flux F
 //                               adds F * density * weight to the mean over the film; pdf is that of `connect` choosing it, 1/sr
-//   ReceiverSample NAME_at_surface(R r, uint primitive, bool front, bool leaves)   it lies on this primitive: what light adds there that
-//                               comes to a side or leaves it, as `connect` or `far` would have it; pdf 0 = it does not
+//   ReceiverSample NAME_at_surface(R r, uint primitive, vec3 point, bool front, bool leaves)   it lies on this primitive, at the
+//                               point: what light adds there that comes to a side or leaves it, as `connect` or `far` would have it; pdf 0 = it does not
 //   uint           NAME_face(R r, vec2 film, out bool front)   the primitive, and its side, that a point of the film is of
 //
 // With `#define NAME_RECORDS_RAYS 1` what passes the receptor is written down (features/ray_record.glsl).

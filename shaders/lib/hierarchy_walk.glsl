@@ -3,8 +3,6 @@
 // On a CPU driver the lanes of a subgroup walk their rays together, so a step of the walk does at most one inner
 // node and at most one primitive for each lane, and pushes and pops by selects instead of branches.
 
-#include "features/elements.glsl"
-
 struct Traversal {
     vec3 origin, direction;  // in the frame being walked
     RayShear shear;

@@ -59,13 +59,21 @@ CameraRay receiver_surface_emit(SurfaceMeter r, vec2 film, vec2 u, float film_as
 ReceiverSample receiver_surface_connect(SurfaceMeter r, vec3 point, vec2 u, float film_aspect) { return no_receiver_sample(); }
 ReceptorHit receiver_surface_receptor(SurfaceMeter r, vec3 origin, vec3 direction) { return no_receptor_hit(); }
 
-ReceiverSample receiver_surface_at_surface(SurfaceMeter r, uint primitive, bool front, bool leaves) {
+// Barycentric coordinates of the last two corners, of a point on the triangle.
+vec2 receiver_surface_place(Triangle t, vec3 point) {
+    vec3 e1 = t.v1 - t.v0, e2 = t.v2 - t.v0, d = point - t.v0, n = cross(e1, e2);
+    return vec2(dot(cross(d, e2), n), dot(cross(e1, d), n)) / dot(n, n);
+}
+
+ReceiverSample receiver_surface_at_surface(SurfaceMeter r, uint primitive, vec3 point, bool front, bool leaves) {
     uint triangle = watched_words[r.mesh.first + r.mesh.count + primitive];
     if (triangle == NO_RECORD) return no_receiver_sample();
     Triangle t = primitives[primitive];
     vec3 normal = front ? triangle_normal(t) : -triangle_normal(t);
     uint part = (leaves ? 2u : 0u) + (front ? 0u : 1u);
-    vec2 film = (vec2(triangle % r.mesh.columns, part * r.mesh.rows + triangle / r.mesh.columns) + 0.5) /
+    // Within the triangle's part of the picture, for pictures that are finer than one pixel a triangle.
+    vec2 within = clamp(unwarp_triangle(receiver_surface_place(t, point)), 0.001, 0.999);
+    vec2 film = (vec2(triangle % r.mesh.columns, part * r.mesh.rows + triangle / r.mesh.columns) + within) /
                 vec2(r.mesh.columns, SURFACE_PARTS * r.mesh.rows);
     float density = 1.0 / (triangle_area(t) * receiver_surface_pixels(r));
     return ReceiverSample(normal, 0.0, film, leaves ? density * INV_PI : density, PI, 1.0);
