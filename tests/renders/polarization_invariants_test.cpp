@@ -107,6 +107,8 @@ json with_angles(json object, const ClassInfo& info, bool mirrored) {
     if (object.contains("matrix") && mirrored)
         for (int i = 0; i < 16; ++i)
             if ((i / 4 < 2) != (i % 4 < 2)) object["matrix"][i] = -double(object["matrix"][i]);
+    if (object.contains("orders") && mirrored)  // of a grating: they count to the other side
+        for (json& order : object["orders"]) order["order"] = -int(order["order"]);
     return object;
 }
 
