@@ -56,18 +56,18 @@ TEST_CASE("a ball of glass in an element, three deep, is as it is without") {
     CHECK(scene.features.elements);
 
     RenderPlan plan;
-    plan.width = 32, plan.height = 24, plan.seeds = 16, plan.passes = 128;
+    plan.width = 32, plan.height = 24, plan.seeds = 16, plan.passes = 64;
     plan.merge_radius = 0.1f;
-    const Estimates expected = backward(plain.import(), 512);
+    const Estimates expected = backward(plain.import(), 256);
     check_agreement("backward", render_estimates(scene, plan), expected, 0.002, 0.01);
-    plan.algorithm = Algorithm::bidirectional, plan.passes = 64;
+    plan.algorithm = Algorithm::bidirectional, plan.passes = 32;
     const Estimates both = render_estimates(scene, plan);
     check_agreement("bidirectional", both, expected, 0.002, 0.01);
     const RenderCounters& c = both.counters;
     CHECK(c.emitted ==
           doctest::Approx(c.absorbed + c.forward_escaped + c.roulette + c.forward_depth_limit_lost)
               .epsilon(1e-4));
-    plan.algorithm = Algorithm::forward;
+    plan.algorithm = Algorithm::forward, plan.passes = 64;
     check_agreement("forward", render_estimates(scene, plan), expected, 0.002, 0.01);
 }
 
@@ -90,7 +90,7 @@ TEST_CASE("lamps and a camera within elements") {
     s.placed("element", subscene(camera), {{-0.05, 0, 0.7}, {0, 0.1, 0, 0.99498743710662}});
     Scene scene = compile_test_scene(s.import());
     Comparison c;
-    c.backward = 512, c.forward = 512, c.bidirectional = 128;
+    c.backward = 256, c.forward = 256, c.bidirectional = 64;
     c.largest_error = 0.01;
     check_against_backward(scene, c);
 }
@@ -156,7 +156,7 @@ TEST_CASE("glass that touches the boundary of its element from both sides") {
         }
         return s.import();
     };
-    check_agreement("touching", backward(build(true), 256, 1), backward(build(false), 256), 0.002, 0.01);
+    check_agreement("touching", backward(build(true), 128, 1), backward(build(false), 128), 0.002, 0.01);
 }
 
 TEST_CASE("polarized light and fog pass into an element and out of it") {
@@ -182,7 +182,7 @@ TEST_CASE("polarized light and fog pass into an element and out of it") {
         return s.import();
     };
     RenderPlan plan;
-    plan.width = 16, plan.height = 16, plan.seeds = 16, plan.passes = 256, plan.stokes = true;
+    plan.width = 16, plan.height = 16, plan.seeds = 16, plan.passes = 128, plan.stokes = true;
     const Estimates expected = render_estimates(build(false), plan);
     plan.first_seed = 701;
     check_agreement("Stokes images", render_estimates(build(true), plan), expected, 0.003, 0.02, 4);
