@@ -1,15 +1,15 @@
 // A rectangle in the xy plane around the origin, facing +z, with small bumps or dents of one shape in cells side by side: the
 // dots of a light guide, an array of lenses, a prism film. Which cell holds one, where and how large follows from the cell's number,
-// so that any number of them takes no memory. Cells lie around the middle; what is left of the rectangle beside them is plain. Ridges are open at their ends. Seen
-// from +z u runs to the right (+x), v down (-y).
-//
-// Example:
-//     {"nodes": [{"name": "microstructure", "translation": [0, 0.4, 0], "rotation": [-0.2588, 0, 0, 0.9659], "extensions": {"ETD_optics": {
-//         "geometry": {"class": "microstructure", "size": [1.1, 0.7], "pitch": [0.1, 0.1], "radius": 0.04, "depth": 0.03, "material": 1}}}}]}
+// so that any number of them takes no memory. Cells lie around the middle; what is left of the rectangle beside them is plain.
+// Ridges are open at their ends. Seen from +z u runs to the right (+x), v down (-y).
 //
 // A ray walks through the cells that it passes while it is within the height of the shapes (Amanatides & Woo 1987, row by row);
 // what it costs does not depend on how many there are. Places are relative to the middle of a cell, as differences of coordinates, so
 // that a dot keeps its shape where it stands far from the middle of a sheet.
+//
+// Example:
+//     {"nodes": [{"name": "microstructure", "translation": [0, 0.4, 0], "rotation": [-0.2588, 0, 0, 0.9659], "extensions": {"ETD_optics": {
+//         "geometry": {"class": "microstructure", "size": [1.1, 0.7], "pitch": [0.1, 0.1], "radius": 0.04, "depth": 0.03, "material": 1}}}}]}
 #include "features/textures.glsl"
 #include "lib/hash.glsl"
 
