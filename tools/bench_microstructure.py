@@ -24,7 +24,7 @@ WIDTH_TIMES_HEIGHT = 0.4 * 0.25  # m², of the guide
 def measure(program, scene, folder):
     stats = folder / "stats.json"
     command = [program, "render", scene, "-o", folder / "out.exr", "--receiver", "front", "--algorithm", "forward", "--color", "rgb"]
-    subprocess.run([*command, "--forward-paths", "4000", "--passes", "8", "--stats", stats, "-q"], check=True)
+    subprocess.run([*command, "--forward-paths", "1000", "--passes", "8", "--stats", stats, "-q"], check=True)
     return json.loads(stats.read_text())
 
 
