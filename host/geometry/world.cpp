@@ -206,7 +206,7 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
     const Placing placing(scene, shape_bounds, local_bounds);
     world.center = placing.center();
 
-    // Of the scene and of each content: first all that is placed, since that of the scene is recentred.
+    // A tree for the scene, whose places are relative to its centre, and one for each content.
     for (uint32_t content = 0; content <= scene.contents.size(); ++content) {
         const glm::dmat4 recentre =
             content == 0 ? glm::translate(glm::dmat4(1.0), -world.center) : glm::dmat4(1.0);

@@ -265,8 +265,12 @@ void SceneCompiler::measure_lights() {
     std::vector<uint32_t> order(lights_.size());
     for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
     std::stable_partition(order.begin(), order.end(), [&](uint32_t i) { return is_at_infinity(bounds[i]); });
-    std::stable_sort(order.begin(), order.end(),
-                     [&](uint32_t a, uint32_t b) { return element_of_light(a) < element_of_light(b); });
+    std::vector<uint32_t> elements(lights_.size());
+    if (!in_.elements.empty()) {
+        for (uint32_t i = 0; i < elements.size(); ++i) elements[i] = element_of_light(i);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](uint32_t a, uint32_t b) { return elements[a] < elements[b]; });
+    }
     std::vector<uint32_t> sorted_lights;
     std::vector<LightStokes> sorted_stokes;
     std::vector<LightBounds> sorted_bounds;
@@ -280,14 +284,14 @@ void SceneCompiler::measure_lights() {
         out_.light_names.push_back(light_names_[i]);
         out_.light_shapes.push_back(primitive == no_record ? ""
                                                            : out_.placed_names[out_.placed->at(primitive)]);
-        light_elements_.push_back(element_of_light(i));
-        if (light_elements_.back() == 0)
+        light_elements_.push_back(elements[i]);
+        if (elements[i] == 0)
             sorted_bounds.push_back(bounds[i]);
         else if (is_at_infinity(bounds[i]))
             fail_input("{}: light {} shines from infinity within an optical element; allowed: in the scene",
                        in_.file.string(), light_names_[i]);
         powers.push_back(bounds[i].power);
-        const bool is_enclosed_point = element_of_light(i) != 0 && bounds[i].lo == bounds[i].hi;
+        const bool is_enclosed_point = elements[i] != 0 && bounds[i].lo == bounds[i].hi;
         if (is_unmet(bounds[i]) || is_enclosed_point) out_.unmet_lights.push_back(light_names_[i]);
         out_.power += bounds[i].power;
         if (primitive != no_record) positions[primitive] = position;
