@@ -61,7 +61,8 @@
     X(16, LcCell, lc_cell)                           \
     X(17, MuellerSheet, mueller)                     \
     X(18, MuellerTableSurface, mueller_table)        \
-    X(19, Grating, grating)
+    X(19, Grating, grating)                          \
+    X(20, Antireflective, antireflective)
 
 // folder media/, contract interfaces/medium_optics.glsl
 #define MEDIUM_CLASSES(X)               \

@@ -216,7 +216,7 @@ MaterialDescription read_material(GltfImport& import, size_t i) {
         read_material_optics(import, *optics, material);
 
     json& parameters = material.surface.parameters;
-    if (material.surface.class_name == "dielectric") {
+    if (material.surface.class_name == "dielectric" || material.surface.class_name == "antireflective") {
         take_medium_from_ior(import, material, at, parameters);
     } else if (material.surface.class_name.empty() && find_extension(at, "KHR_materials_unlit")) {
         material.surface = {"principled", unlit(import, at, material), at.pointer};

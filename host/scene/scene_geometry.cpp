@@ -43,10 +43,21 @@ static void check_cells(const ClassInfo& info, const ObjectDescription& object, 
                    radius);
 }
 
+// Of a disk or an asphere.
+static void check_hole(const ObjectDescription& object, const std::string& place) {
+    if (!object.parameters.contains("hole")) return;
+    const double hole = object.parameters["hole"],
+                 rim = object.parameters[object.class_name == "disk" ? "radius" : "aperture"];
+    if (!(hole < rim))
+        fail_input("{}/hole: {:g} m; allowed: less than the radius of the rim, {:g} m", place, hole, rim);
+}
+
 void SceneCompiler::add_geometry() {
     std::vector<Added> shapes;
     for (const PlacedObject& shape : in_.shapes) {
         shapes.push_back(add_record(Interface::geometry, shape.object));
+        if (shape.object.class_name == "disk" || shape.object.class_name == "asphere")
+            check_hole(shape.object, message_place(in_, shape.object.where));
         if (shapes.back().info->never_emits && in_.materials[shape.material].emission)
             fail_input("{}/material: emits light, which a {} cannot; allowed: a material that does not",
                        message_place(in_, shape.object.where), shape.object.class_name);

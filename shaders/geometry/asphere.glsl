@@ -1,5 +1,5 @@
 // A lens surface about the z axis with its vertex at the origin, seen from +z: z = c r² / (1 + √(1 - (1 + K) c² r²)) + a₄ r⁴ + a₆ r⁶ + …
-// up to the aperture, on the sheet that holds the vertex. u runs around the axis, v from it to the rim.
+// up to the aperture, on the sheet that holds the vertex, with a hole about it if wanted. u runs around the axis, v from it to the rim.
 //
 // Example:
 //     {"nodes": [{"name": "asphere", "translation": [0, 0.45, 0], "rotation": [-0.2588, 0, 0, 0.9659], "extensions": {"ETD_optics": {
@@ -16,6 +16,7 @@ struct Asphere {
     float conic;                       //: 0 in (-inf, inf). Conic constant K: 0 sphere, -1 paraboloid, below -1 hyperboloid.
     AsphereCoefficients coefficients;  //: []. Of r^4, r^6, … r^18, in 1/m^3, 1/m^5, …
     float aperture;                    //: required in (0, inf) m. Radius of the rim; of spheres and ellipsoids at most where they are widest.
+    float hole;                        //: 0 in [0, inf) m. Radius of a hole about the axis, less than that.
 };
 
 bool asphere_is_conic(Asphere r) { return r.coefficients.low == vec4(0) && r.coefficients.high == vec4(0); }
@@ -53,6 +54,11 @@ void asphere_bounds(Asphere r, out vec3 lo, out vec3 hi) {
     hi = vec3(r.aperture, r.aperture, max(conic, 0.0) + asphere_polynomial(up, w));
 }
 
+bool is_on_asphere(Asphere r, vec3 p) {
+    float w = dot(p.xy, p.xy);
+    return w <= r.aperture * r.aperture && w >= r.hole * r.hole;
+}
+
 // c (r² + (1 + K) z²) - 2 z = 0 along the ray, a t² + 2 b t + e = 0, without a difference of near numbers. On the vertex sheet
 // 1 - c (1 + K) z, the root of the formula, is not negative.
 bool asphere_meet_conic(Asphere r, vec3 o, vec3 d, float t_min, float t_max, out float t) {
@@ -67,7 +73,7 @@ bool asphere_meet_conic(Asphere r, vec3 o, vec3 d, float t_min, float t_max, out
         float divisor = i == 0 ? q : a;
         float at = divisor != 0.0 ? (i == 0 ? e : q) / divisor : INFINITY;
         vec3 p = o + at * d;
-        bool met = at > t_min && at < min(t_max, t) && dot(p.xy, p.xy) <= r.aperture * r.aperture && 1.0 - c * k * p.z >= 0.0;
+        bool met = at > t_min && at < min(t_max, t) && is_on_asphere(r, p) && 1.0 - c * k * p.z >= 0.0;
         if (met) t = at;
     }
     return t < INFINITY;
@@ -140,7 +146,8 @@ bool asphere_meet(Asphere r, vec3 o, vec3 d, float t_min, float t_max, out float
         }
         if (crossed) {
             t = asphere_solve(r, o, d, t0, end, side < 0.0);
-            return t > t_min && t < t_max;
+            if (is_on_asphere(r, o + t * d)) return t > t_min && t < t_max;
+            t = INFINITY;  // through the hole
         }
         t0 = t1, f0 = f1;
     }
@@ -188,20 +195,24 @@ float asphere_area_between(Asphere r, float q0, float q1) {
                         8.0 * asphere_area_density(r, middle)) / 18.0;
 }
 
+float asphere_panel(Asphere r, int i) {
+    float hole = r.hole / r.aperture, inner = hole * hole / (1.0 + sqrt((1.0 - hole) * (1.0 + hole)));
+    return mix(inner, 1.0, float(i) / float(ASPHERE_PANELS));
+}
+
 float asphere_area(Asphere r) {
     float area = 0.0;
-    for (int i = 0; i < ASPHERE_PANELS; ++i)
-        area += asphere_area_between(r, float(i) / float(ASPHERE_PANELS), float(i + 1) / float(ASPHERE_PANELS));
+    for (int i = 0; i < ASPHERE_PANELS; ++i) area += asphere_area_between(r, asphere_panel(r, i), asphere_panel(r, i + 1));
     return area;
 }
 
 GeometrySample asphere_sample(Asphere r, vec2 u) {
     float area = asphere_area(r), wanted = u.x * area, q0 = 0.0, q1 = 0.0;
     for (int i = 0; i < ASPHERE_PANELS; ++i) {
-        q1 = float(i + 1) / float(ASPHERE_PANELS);
+        q0 = asphere_panel(r, i), q1 = asphere_panel(r, i + 1);
         float panel = asphere_area_between(r, q0, q1);
         if (wanted < panel || i == ASPHERE_PANELS - 1) break;
-        wanted -= panel, q0 = q1;
+        wanted -= panel;
     }
     float q = 0.5 * (q0 + q1);
     for (int i = 0; i < 4; ++i)

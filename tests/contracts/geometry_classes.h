@@ -145,10 +145,10 @@ inline const std::map<std::string, Oracle>& oracles() {
           [](V p) { return glm::length(p) - double(0.8f); },
           {glm::vec3(-0.8f), glm::vec3(0.8f)}}},
         {"disk",
-         {{{"radius", 0.8}},
+         {{{"radius", 0.8}, {"hole", 0.25}},
           [](V o, V d) -> Ts {
               const V p = o - o.z / d.z * d;
-              if (glm::length(p) > 0.8) return {};
+              if (glm::length(p) > 0.8 || glm::length(p) < 0.25) return {};
               return {-o.z / d.z};
           },
           [](V p) { return p.z; },
@@ -202,8 +202,15 @@ inline const std::map<std::string, Oracle>& oracles() {
           false}},
         // Bulges towards +z, so that what leaves it on that side does not come back.
         {"asphere",
-         {{{"curvature", -0.25}, {"conic", -0.5}, {"coefficients", {-0.1, 0, -0.3}}, {"aperture", 0.8}},
-          [](V o, V d) { return asphere.crossings(o, d); },
+         {{{"curvature", -0.25}, {"conic", -0.5}, {"coefficients", {-0.1, 0, -0.3}}, {"aperture", 0.8}, {"hole", 0.25}},
+          [](V o, V d) {
+              Ts result = asphere.crossings(o, d);
+              std::erase_if(result, [&](double t) {
+                  const V p = o + t * d;
+                  return std::hypot(p.x, p.y) < 0.25;
+              });
+              return result;
+          },
           [](V p) { return asphere.distance(p); },
           {{-0.8f, -0.8f, float(asphere.shape.sag(0.8, 0))}, {0.8f, 0.8f, 0}}}},
     };

@@ -107,6 +107,10 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
                   1,
                   1.0,
                   0.01}};
+    if (name == "antireflective")
+        return {C{"coated glass", nlohmann::json::object(), 1, 1.5f, 1.0},
+                C{"out of diamond", nlohmann::json::object(), 2.4f, 1, 1.0},
+                C{"matched", nlohmann::json::object(), 1.5f, 1.5f, 1.0}};
     if (name == "thin_dielectric")
         return {C{"pane", nlohmann::json::object(), 1, 1, 1.0}, C{"bubble", {{"ior", 1}}, 1.33f, 1.33f, 1.0}};
     if (name == "diffuse_transmitter")
