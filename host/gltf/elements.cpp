@@ -123,8 +123,10 @@ void place_content(GltfImport& import, uint32_t element) {
     if (const auto held = import.elements[element].scene) {
         scene.contents.back().boundary = read_boundary(import, at);
         place_nodes(import, *held);
-    } else {
+    } else if (text_value(member(at, "class")) == "microstructure") {
         place_microstructure(import, at);
+    } else {
+        place_lens_system(import, at);
     }
     const uint32_t content = uint32_t(scene.contents.size());
     const auto name = [&](auto& objects, size_t first) {
@@ -153,8 +155,8 @@ void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
     const bool holds_scene = text_value(class_at) == "subscene";
     if (holds_scene)
         only_members(at, {"class", "scene", "boundary"});
-    else if (text_value(class_at) != "microstructure")
-        fail_at(class_at, "there is no element class '{}'; allowed: subscene, microstructure",
+    else if (text_value(class_at) != "microstructure" && text_value(class_at) != "lens_system")
+        fail_at(class_at, "there is no element class '{}'; allowed: subscene, microstructure, lens_system",
                 text_value(class_at));
     if (import.scene.elements.size() == max_elements)
         fail_at(at, "the scene has more than {} elements", max_elements);

@@ -227,6 +227,9 @@ void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
                   const glm::dmat4& parent_from_local);
 void load_elements(GltfImport& import, uint32_t root_scene);  // what they hold
 
+// lens_elements.cpp: the surfaces, housing and media of an element of class lens_system, placed in its frame.
+void place_lens_system(GltfImport& import, const JsonAt& at);
+
 // nodes.cpp
 void load_nodes(GltfImport& import);
 void place_nodes(GltfImport& import, uint32_t scene);                 // of the file, below content_root

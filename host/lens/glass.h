@@ -25,8 +25,11 @@ class Glass {
     bool covers(double nm) const { return nm >= first_nm_ && nm <= last_nm_; }
     bool operator==(const Glass&) const = default;
 
-  private:
     enum class Formula { constant, sellmeier, cauchy };
+    Formula formula() const { return formula_; }
+    const std::vector<double>& coefficients() const { return coefficients_; }
+
+  private:
     std::string name_;
     Formula formula_ = Formula::constant;
     std::vector<double> coefficients_ = {1};

@@ -68,6 +68,7 @@ void read_class(const std::string& text, ClassInfo& info) {
     info.records_rays = text.find("#define " + info.prefix + "_RECORDS_RAYS") != std::string::npos;
     info.on_surface = text.find(info.prefix + "_at_surface(") != std::string::npos;
     info.has_receptor = text.find(info.prefix + "_receptor(") != std::string::npos;
+    info.has_pupil = text.find(info.prefix + "_pupil(") != std::string::npos;
     info.is_far = text.find(info.prefix + "_far(") != std::string::npos;
     std::smatch unit;
     if (std::regex_search(info.summary, unit, std::regex(R"(A pixel: (\S+)\.)"))) info.pixel_unit = unit[1];
@@ -341,6 +342,7 @@ std::string class_header(const InterfaceInfo& interface, const std::vector<const
             if (!info->has_receptor)
                 text += fmt::format("#define {}_receptor(r, origin, direction) no_receptor_hit()\n",
                                     info->prefix);
+            if (!info->has_pupil) text += fmt::format("#define {}_pupil(r) vec4(0)\n", info->prefix);
             if (!info->is_far)
                 text += fmt::format("#define {}_far(r, direction, film_aspect) no_receiver_sample()\n",
                                     info->prefix);

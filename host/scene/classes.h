@@ -60,7 +60,7 @@ struct ClassInfo {
     bool never_emits = false;        // a geometry that no light is sampled on
     bool says_coverage = false;      // NAME_coverage is there
     bool is_crystal = false;         // NAME_crystal is there: it refracts doubly
-    bool has_aperture = false, has_receptor = false, is_far = false, records_rays = false,
+    bool has_aperture = false, has_receptor = false, has_pupil = false, is_far = false, records_rays = false,
          on_surface = false;           // of receivers (interfaces/receiver.glsl)
     std::string pixel_unit;            // of receivers that measure; empty = a camera
     bool polarizes = false;            // NAME_POLARIZES: scenes with the class carry polarization

@@ -8,6 +8,17 @@
 namespace etendue {
 
 namespace {
+
+// Of an illuminance meter.
+void check_pupil(const nlohmann::json& parameters, const std::string& place) {
+    const auto pupil = parameters.find("pupil");
+    if (pupil == parameters.end() || !(pupil->at(1).get<double>() > 0)) return;
+    if (parameters.value("shape", "plane") != "plane")
+        fail_input("{}/pupil: the shape is a {}; allowed: a plane", place,
+                   parameters["shape"].get<std::string>());
+    if (!(pupil->at(0).get<double>() > 0))
+        fail_input("{}/pupil: its distance is 0; allowed: more than 0 m", place);
+}
 constexpr double smooth_alpha = 1e-4;  // below which a surface is smooth (shaders/lib/microfacet.glsl)
 }
 
@@ -77,7 +88,7 @@ void SceneCompiler::add_materials() {
         white.inside = white.outside = white.emission_texture = white.normal_texture = white.body = no_record;
         const Added surface =
             add_record(Interface::surface, {"lambertian", {{"reflectance", {1, 1, 1}}}, ""});
-        for (int shape = 0; shape < 4; ++shape) {  // shaders/features/receptor_shapes.glsl
+        for (int shape = 0; shape < 5; ++shape) {  // shaders/features/receptor_shapes.glsl
             surfaces.push_back(surface);
             places.push_back(uint32_t(materials_.size()));
             materials_.push_back(white);
@@ -85,7 +96,8 @@ void SceneCompiler::add_materials() {
         }
         for (const PlacedObject& receiver : in_.receivers) {
             const nlohmann::json& parameters = receiver.object.parameters;
-            out_.features.receptor_shapes |= parameters.contains("shape") && parameters["shape"] != "plane";
+            check_pupil(parameters, message_place(in_, receiver.object.where));
+            out_.features.receptor_shapes |= (parameters.contains("shape") && parameters["shape"] != "plane") || parameters.contains("pupil");
         }
     }
     const auto refs = references(Interface::surface, surfaces);

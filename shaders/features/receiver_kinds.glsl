@@ -23,6 +23,16 @@ ReceptorHit receiver_receptor(uint ref, vec3 origin, vec3 direction) {
     return result;
 }
 
+vec4 receiver_pupil(uint ref) {
+    vec4 result = vec4(0);
+    switch (record_tag(ref)) {
+#define CASE(tag, Struct, name) case tag: result = name##_pupil(name##_record(record_index(ref))); break;
+        RECEIVER_CLASSES(CASE)
+#undef CASE
+    }
+    return result;
+}
+
 bool records_rays(uint ref) {
     bool result = false;
     switch (record_tag(ref)) {

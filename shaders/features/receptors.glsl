@@ -72,7 +72,7 @@ SurfacePoint receptor_point(Path path, Hit hit) {
     p.geometric_normal = -path.direction;
 #if FORWARD
     ReceptorHit r;
-    next_receptor(path, r);
+    uint view = next_receptor(path, r);
     uint shape = r.shape;
     p.position += r.t * path.direction;
     p.geometric_normal = r.normal;
@@ -82,13 +82,14 @@ SurfacePoint receptor_point(Path path, Hit hit) {
             if (dot(p.geometric_normal, path.direction) > 0.0) p.geometric_normal = -p.geometric_normal;
         }
 #else
-    uint shape = path.flags >> PATH_SHAPE_SHIFT & 3u;
+    uint shape = path.flags >> PATH_SHAPE_SHIFT & 7u, view = path.flags >> PATH_VIEW_SHIFT;
 #endif
     p.shading_normal = p.geometric_normal;
     p.error = max(p.error, vec3(receptor_margin(p.position, 0.0)));
     p.tangent = vec4(frame_around(p.geometric_normal)[0], 1.0);
     p.color = vec4(1);
     p.uv0 = p.uv1 = vec2(0);
+    if (HAS_RECEPTOR_SHAPES == 1 && shape == SHAPE_WINDOW) place_window(p, receiver_pupil(views[view].receiver));
     p.material = RECEPTOR_MATERIAL + (HAS_RECEPTOR_SHAPES == 1 ? shape : 0u);
     p.light = NO_RECORD;
     return p;

@@ -14,6 +14,7 @@
 //   ReceptorHit    NAME_receptor(R r, vec3 origin, vec3 direction)   where light that passes on the ray is caught: all paths of this
 //                               receiver end at its receptor, a white diffuse plane, or one of small bodies, that nothing else sees
 //                               (features/receptors.glsl)
+//   vec4           NAME_pupil(R r)   centre and radius, m, of the disk that light comes through to a receptor with a window
 //   ReceiverSample NAME_far(R r, vec3 direction, float film_aspect)   what light that leaves the scene along `direction` adds: the flux F
 //                               adds F * density * weight to the mean over the film; pdf is that of `connect` choosing it, 1/sr
 //   ReceiverSample NAME_at_surface(R r, uint primitive, vec3 point, bool front, bool leaves)   it lies on this primitive, at the
@@ -64,6 +65,8 @@ struct ReceptorHit {
     vec3 normal;  // unit
     uint shape;   // of the receptor (features/receptor_shapes.glsl)
 };
+// Kinds of receptors: a plane is white and diffuse; through a window, a disk before it, all its light comes.
+const uint SHAPE_PLANE = 0u, SHAPE_HEMISPHERE = 1u, SHAPE_SPHERE = 2u, SHAPE_CYLINDER = 3u, SHAPE_WINDOW = 4u;
 
 ReceptorHit no_receptor_hit() { return ReceptorHit(INFINITY, vec3(0, 0, 1), 0u); }
 

@@ -57,7 +57,8 @@ const uint PATH_MONOCHROME = 8u;    // only the hero wavelength is left
 const uint PATH_AFTER_BEAM = 16u;   // … in a medium where rays merge (features/mis.glsl)
 const uint PATH_TO_RECEPTOR = 32u;    // what the ray meets first, if nothing stops it, is a receptor (features/receptors.glsl)
 const uint PATH_HERO_SHIFT = 8u;      // two bits: the lane of the hero
-const uint PATH_SHAPE_SHIFT = 10u;    // backward, two bits: of the receptor at which it starts
+const uint PATH_SHAPE_SHIFT = 10u;    // backward, three bits: of the receptor at which it starts
+const uint PATH_VIEW_SHIFT = 13u;     // backward, the rest: the view of that, where receptors have shapes
 const uint PATH_PASSED_SHIFT = 10u;   // forward, a bit a view from here on: the ray has passed its receptor
 
 // A ray that brings `contribution` unless something stands in its way.

@@ -12,7 +12,11 @@ struct IlluminanceMeter {
     vec2 size;        //: required in (0, inf) m. Width along x and height along y.
     vec2 resolution;  //: [64, 64] in [1, 16384]. Pixels along x and y.
     uint shape;       //: "plane" of plane|hemisphere|sphere|cylinder. What is lit at each point.
+    vec2 pupil;       //: [0, 0] in [0, inf) m. Of a plane: distance along +z and radius of a disk about z; only light that comes through it is measured, which is where paths go. 0: all light.
 };
+
+// With the film of a camera: what its lens sends.
+uint illuminance_shape(IlluminanceMeter r) { return r.pupil.y > 0.0 ? SHAPE_WINDOW : r.shape; }
 
 vec3 illuminance_normal(mat4x3 m, out float area) {
     vec3 n = cross(m[0], m[1]);
@@ -26,7 +30,7 @@ CameraRay illuminance_emit(IlluminanceMeter r, vec2 film, vec2 u, float film_asp
     float area;
     vec3 normal = illuminance_normal(m, area);
     vec3 origin = m * vec4((film.x - 0.5) * r.size.x, (0.5 - film.y) * r.size.y, 0.0, 1.0);
-    return CameraRay(origin, -normal, PI, 1.0 / (area * r.size.x * r.size.y), 1.0, true, true, r.shape);
+    return CameraRay(origin, -normal, PI, 1.0 / (area * r.size.x * r.size.y), 1.0, true, true, illuminance_shape(r));
 }
 
 // Where a point is, in sizes from the middle.
@@ -55,7 +59,12 @@ ReceptorHit illuminance_receptor(IlluminanceMeter r, vec3 origin, vec3 direction
     if (!(t > 0.0) || isinf(t)) return no_receptor_hit();
     vec3 place = illuminance_place(r, normal, origin + t * direction);
     if (any(greaterThan(abs(place.xy), vec2(0.5)))) return no_receptor_hit();
-    return ReceptorHit(t, normal, r.shape);
+    return ReceptorHit(t, normal, illuminance_shape(r));
+}
+
+vec4 illuminance_pupil(IlluminanceMeter r) {
+    mat4x3 m = r.placement.world_from_local;
+    return vec4(m * vec4(0, 0, r.pupil.x, 1), r.pupil.y * length(m[0]));
 }
 
 float illuminance_footprint(IlluminanceMeter r, vec3 point, float film_aspect, out float slope) {

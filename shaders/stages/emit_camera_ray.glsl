@@ -32,7 +32,7 @@ Path emit_camera_ray(View view, uint place, uint sample_index, uint seed) {
     path.around = around_ray(view, film);
     path.depth = 0u;
     path.flags = PATH_STARTS | (ray.is_parallel ? PATH_PARALLEL : 0u);
-    if (HAS_RECEPTORS == 1 && ray.at_receptor) path.flags |= PATH_TO_RECEPTOR | (ray.shape << PATH_SHAPE_SHIFT);
+    if (HAS_RECEPTORS == 1 && ray.at_receptor) path.flags |= PATH_TO_RECEPTOR | (ray.shape << PATH_SHAPE_SHIFT) | (view.index << PATH_VIEW_SHIFT);
     start_hero(path, path.random.pixel_hash >> 8);
     start_rows(path, view.receiver);
     start_history(path);

@@ -28,7 +28,7 @@ def guide_scene(name, pitch, words):
     s = Gltf(name, words)
     s.medium("acrylic", ior=1.49)
     inner = s.scene("guide", lambda: guide(s, pitch, 100))
-    s.element("guide", facing([0, 0, 0], [0, 0, 1]), inner)
+    s.element("guide", facing([0, 0, 0], [0, 0, 1]), "subscene", scene=inner)
     sheet = s.surface("diffuser", "diffuse_transmitter", reflectance=0.3, transmittance=0.6)
     s.shape("diffuser", "rectangle", sheet, matrix=facing([0, 0, 0.004], [0, 0, 1]), size=[WIDTH, HEIGHT])
     s.camera([0, -0.25, 0.6], [0, 0, 0], 30, 4 / 3)
@@ -78,10 +78,10 @@ def housing():
 
     def inside():
         walls(s, (-w - 0.01, -h - 0.01, -0.02), (w + 0.01, h + 0.01, 0.06), back=black, left=black, right=black, floor=black, ceiling=black)
-        s.element("guide", facing([0, 0, 0], [0, 0, 1]), guide_index)
-        s.element("lenses", facing([0, 0, 0.02], [0, 0, 1]), lens_index)
+        s.element("guide", facing([0, 0, 0], [0, 0, 1]), "subscene", scene=guide_index)
+        s.element("lenses", facing([0, 0, 0.02], [0, 0, 1]), "subscene", scene=lens_index)
 
-    s.element("housing", facing([0, 0.2, 0], [0.2, 0.1, 1]), s.scene("housing", inside))
+    s.element("housing", facing([0, 0.2, 0], [0.2, 0.1, 1]), "subscene", scene=s.scene("housing", inside))
     pane = s.surface("pane", "diffuse_transmitter", reflectance=0.3, transmittance=0.6)
     s.shape("pane", "rectangle", pane, matrix=facing([0.0144, 0.2072, 0.072], [0.2, 0.1, 1]), size=[WIDTH + 0.02, HEIGHT + 0.02])
     floor = s.surface("floor", "lambertian", reflectance=[0.5, 0.45, 0.4])

@@ -189,13 +189,14 @@ class Gltf:
         self.inner.append({"name": name, "nodes": [i for i in range(first, len(self.nodes)) if i not in held]})
         return len(self.inner)
 
-    def element(self, name, matrix, scene):
-        """A scene of the file as a black box."""
-        self._placed("element", name, matrix, "subscene", {"scene": scene})
+    def element(self, name, matrix, class_name, **parameters):
+        """An optical element; a `subscene` names the index of its scene."""
+        self._placed("element", name, matrix, class_name, parameters)
 
     def _placed(self, interface, name, matrix, class_name, parameters):
         optics = {interface: {"class": class_name, **parameters}}
-        self.nodes.append({"name": name, "matrix": matrix, "extensions": {"ETD_optics": optics}})
+        placement = {"matrix": matrix} if matrix else {}
+        self.nodes.append({"name": name, **placement, "extensions": {"ETD_optics": optics}})
 
     def camera(self, position, target, yfov_degrees, aspect, name="camera", stokes=False):
         self.cameras.append(

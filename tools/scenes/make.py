@@ -16,6 +16,7 @@ from elements import housing, light_guide, light_guide_fine
 from example import example
 from furnaces import furnace_closed, furnace_rough, furnace_smooth, spheres
 from grin import grin
+from lenses import double_gauss
 from lights import lamps, many_lights
 from manual import write_showcases
 from measured import integrating_sphere, led_lens, office, street
@@ -54,6 +55,7 @@ SCENES = [
     light_guide,
     light_guide_fine,
     housing,
+    double_gauss,
     furnace_smooth,
     furnace_rough,
     furnace_closed,

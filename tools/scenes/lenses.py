@@ -1,0 +1,70 @@
+"""Lenses as optical elements: a camera behind one, a coupler, a spectrometer."""
+
+from gltf_builder import Gltf, facing
+
+MM = 1e-3
+# Double Gauss f/2, US patent 2,673,491 (Tronnier): radius, thickness and index behind, diameter, in mm; the sixth is the stop.
+DOUBLE_GAUSS = [
+    (58.950, 7.520, 1.670, 50.4),
+    (169.660, 0.240, 1.0, 50.4),
+    (38.550, 8.050, 1.670, 46.0),
+    (81.540, 6.550, 1.699, 46.0),
+    (25.500, 11.410, 1.0, 36.0),
+    (0, 9.000, 1.0, 34.2),
+    (-28.990, 2.360, 1.603, 34.0),
+    (81.540, 12.130, 1.658, 40.0),
+    (-40.770, 0.380, 1.0, 40.0),
+    (874.130, 6.440, 1.717, 40.0),
+    (-79.460, 0, 1.0, 40.0),
+]
+
+
+def surfaces(rows, stop=None):
+    """Rows of radius, thickness, index or glass, diameter, in mm."""
+    result = []
+    for i, (radius, thickness, glass, diameter) in enumerate(rows):
+        row = {"radius": radius * MM, "thickness": thickness * MM, "semi_diameter": diameter / 2 * MM}
+        if isinstance(glass, str):
+            row["material"] = glass
+        else:
+            row["ior"] = glass
+        if i == stop:
+            row["stop"] = True
+        result.append({key: round(value, 9) if isinstance(value, float) else value for key, value in row.items()})
+    return result
+
+
+def film(s, z, size, resolution, pupil):
+    """At the height z on the axis of a lens through which light comes along +z, so that the picture is upright."""
+    matrix = [-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, z, 1]
+    s.receiver("film", matrix, "illuminance", size=size, resolution=resolution, pupil=pupil)
+
+
+def double_gauss():
+    s = Gltf(
+        "double_gauss",
+        "A camera with a real lens, the double Gauss of Tronnier's patent (100 mm, f/2; US 2,673,491), glass by glass: the film of 36 x 24 mm is an"
+        " illuminance meter behind it. The middle ball, 2 m away, is sharp; small lamps in the background become disks that the lens's rims cut to"
+        " cat's eyes toward the corners. Before it the film gets 0.64 times what falls on a white diffuse surface, fewer towards the corners.",
+    )
+    s.element("lens", None, "lens_system", surfaces=surfaces(DOUBLE_GAUSS, stop=5))
+    film(s, 64.08 * MM + 77.4251 * MM, [0.036, 0.024], [360, 240], [77.4251 * MM, 20.5 * MM])
+    red = s.surface("red", "lambertian", reflectance=[0.6, 0.06, 0.05])
+    grey = s.surface("grey", "lambertian", reflectance=[0.35, 0.35, 0.37])
+    white = s.surface("white", "lambertian", reflectance=0.7)
+    blue = s.surface("blue", "lambertian", reflectance=[0.06, 0.12, 0.5])
+    s.quad("floor", grey, [[-3, -0.2, 0], [3, -0.2, 0], [3, -0.2, -8], [-3, -0.2, -8]])
+    for name, material, place in (
+        ("near ball", blue, [-0.12, -0.12, -1.3]),
+        ("ball in focus", red, [0, -0.12, -2.08]),
+        ("far ball", white, [0.25, -0.12, -3.2]),
+    ):
+        s.shape(name, "sphere", material, translation=place, radius=0.08)
+    for i in range(-4, 5):
+        for j in (-1, 0, 1):
+            bead = s.shape
+            bead(f"lamp {i} {j}", "sphere", 4, translation=[0.24 * i + 0.12 * (j % 2), 0.22 + 0.24 * j, -6.0], radius=0.006)
+    glow = s.emitter("lamps", 60000, color=(1, 0.8, 0.5))
+    assert glow == 4
+    s.surround([300, 320, 360])
+    return s
