@@ -139,9 +139,11 @@ class LensBuilder {
     static bool is_framed(const LensAperture& a) {
         return std::isfinite(a.half_size.x) || std::isfinite(a.half_size.y) || a.center != glm::dvec2(0);
     }
+    // mm. Sizes that only the rays of the design need have some room.
     double rim_radius(size_t i) const {
         const LensAperture& a = p_.surfaces[i].aperture;
-        return std::isfinite(a.semi_diameter) ? a.semi_diameter : a.extent();
+        const double radius = std::isfinite(a.semi_diameter) ? a.semi_diameter : a.extent();
+        return a.is_stated || i == p_.stop ? radius : std::min(1.01 * radius, p_.surfaces[i].shape.reach());
     }
     // mm: of the tube between a surface and the one before; 0 = none.
     double tube_radius(size_t i) const {

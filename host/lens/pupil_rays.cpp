@@ -120,9 +120,10 @@ void set_missing_semi_diameters(Prescription& p) {
         const LensTracer tracer(p, w.nm);
         for (const LensField& field : p.fields) {
             const FieldRays rays(p, figures, field);
-            for (int i = 0; i < 32; ++i) {
-                const double turn = 2 * std::numbers::pi * i / 32;
-                const TracedRay traced = tracer.trace(rays.ray({std::cos(turn), std::sin(turn)}));
+            // Zones of equal area: near a focus the inner ones may need more than the edge.
+            for (int i = 0; i < 128; ++i) {
+                const double turn = 2 * std::numbers::pi * (i / 4) / 32, r = std::sqrt((4 - i % 4) / 4.0);
+                const TracedRay traced = tracer.trace(rays.ray({r * std::cos(turn), r * std::sin(turn)}));
                 for (size_t s = 0; s < traced.points.size(); ++s)
                     needed[s] = std::max(needed[s], glm::length(glm::dvec2(traced.points[s].position)));
             }

@@ -39,8 +39,7 @@ struct LensSpot {
 LensSpot lens_spot(const Prescription& p, const ParaxialFigures& figures, const LensField& field,
                    size_t across = 64);
 
-// Gives surfaces without a semi-diameter that which the edges of the pupil need in all fields; they stop no
-// rays.
+// Gives surfaces without a semi-diameter that which the rays of the pupil need in all fields; they stop none.
 void set_missing_semi_diameters(Prescription& p);
 
 }  // namespace etendue
