@@ -124,6 +124,7 @@ struct RaysOptions : SceneChoice {
 struct LensOptions {
     std::filesystem::path lens;
     std::filesystem::path output;  // .svg or .csv; empty = none
+    std::optional<double> object;  // mm before the first surface; none = what the file says
     uint32_t rays = 7;             // of each field across the pupil, in `output`
 };
 

@@ -183,7 +183,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     InspectOptions inspect_options;
     SharedArguments inspect_arguments;
     LensOptions lens_options;
-    std::optional<std::string> lens_rays;
+    LensTexts lens_texts;
     MergeOptions merge_options;
     std::optional<std::string> merge_passes;
     ClassesOptions classes_options;
@@ -196,7 +196,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     CLI::App* rays = add_rays(app, rays_options, rays_arguments);
     CLI::App* inspect = add_inspect(app, inspect_options, inspect_arguments);
     CLI::App* merge = add_merge(app, merge_options, merge_passes);
-    CLI::App* lens = add_lens(app, lens_options, lens_rays);
+    CLI::App* lens = add_lens(app, lens_options, lens_texts);
     CLI::App* classes = add_classes(app, classes_options, classes_passes);
     CLI::App* devices =
         app.add_subcommand("devices", "Vulkan devices, drivers, limits, and which is the default");
@@ -265,7 +265,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
         return inspect_options;
     }
     if (lens->parsed()) {
-        finish_lens(lens_options, lens_rays);
+        finish_lens(lens_options, lens_texts);
         return lens_options;
     }
     if (classes->parsed()) {

@@ -11,7 +11,12 @@ class App;
 
 namespace etendue {
 
-CLI::App* add_lens(CLI::App& app, LensOptions& options, std::optional<std::string>& rays);
-void finish_lens(LensOptions& options, const std::optional<std::string>& rays);
+// As they stand in the command line.
+struct LensTexts {
+    std::optional<std::string> object, rays;
+};
+
+CLI::App* add_lens(CLI::App& app, LensOptions& options, LensTexts& texts);
+void finish_lens(LensOptions& options, const LensTexts& texts);
 
 }  // namespace etendue

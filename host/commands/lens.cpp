@@ -166,7 +166,11 @@ std::string rays_as_csv(const Prescription& p, const ParaxialFigures& f, size_t 
 
 int lens_command(const LensOptions& options) {
     if (!options.output.empty()) check_writable(options.output);
-    const Prescription p = read_prescription(options.lens);
+    Prescription p = read_prescription(options.lens);
+    if (options.object) {
+        p.object_distance = *options.object;
+        p.surfaces.end()[-2].thickness = paraxial_figures(p, p.primary_nm()).image;
+    }
     for (const std::string& warning : p.warnings)
         fmt::print(stderr, "warning: {}: {}\n", printable(p.file), printable(warning));
     const ParaxialFigures figures = paraxial_figures(p, p.primary_nm());

@@ -56,7 +56,7 @@ TEST_CASE("faults of elements are named") {
     const std::string at = "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element";
     const auto error = [](json element) { return import_error(with_element(std::move(element)).glb()); };
     CHECK(error({{"class", "lens"}, {"scene", 1}}) ==
-          at + "/class: there is no element class 'lens'; allowed: subscene, microstructure");
+          at + "/class: there is no element class 'lens'; allowed: subscene, microstructure, lens_system");
     CHECK(error(subscene(7)) == at + "/scene: is 7; /scenes has elements 0 to 1");
     CHECK(error(subscene(0)) == at + "/scene: scene 0 holds itself; allowed: another scene");
     json sphere = subscene(1);
@@ -105,4 +105,48 @@ TEST_CASE("an element of microstructure is a sheet in a box that it fills") {
     CHECK(import_error(with_element(cells).glb()) ==
           "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element/cell: "
           "cells hold no scenes in this version; allowed: a shape");
+}
+
+TEST_CASE("an element of a lens is its surfaces, rims and housing, and its glasses as media") {
+    const json doublet = {
+        {{"radius", 0.0615}, {"thickness", 0.01}, {"material", "N-BK7"}, {"semi_diameter", 0.015}},
+        {{"radius", -0.0446}, {"thickness", 0.0025}, {"ior", 1.6727}, {"semi_diameter", 0.015}},
+        {{"radius", -0.1299}, {"conic", -0.5}, {"coefficients", {20, 3e4}}, {"semi_diameter", 0.0125}}};
+    const SceneDescription s = with_element({{"class", "lens_system"}, {"surfaces", doublet}}).import();
+    std::map<std::string, int> count;
+    for (const PlacedObject& shape : s.shapes) ++count[shape.object.class_name];
+    CHECK(count == std::map<std::string, int>{{"asphere", 3}, {"disk", 3}, {"cylinder", 2}});
+    const auto glass = std::ranges::find(s.media, "glass N-BK7", &MediumDescription::name);
+    REQUIRE(glass != s.media.end());
+    CHECK(glass->medium.parameters["ior"].contains("sellmeier"));
+    const json& last = std::ranges::find(s.shapes, "surface 3", &PlacedObject::name)->object.parameters;
+    CHECK(last["curvature"] == doctest::Approx(-1 / 0.1299));
+    CHECK(last["coefficients"][0] == doctest::Approx(20));
+    CHECK(std::abs(last["coefficients"][1].get<double>() - 3e4) < 1e-6);
+}
+
+TEST_CASE("faults of lens systems are named") {
+    const auto error = [](json lens) {
+        lens["class"] = "lens_system";
+        return import_error(with_element(lens).glb());
+    };
+    const std::string at = "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element";
+    CHECK(error({}) == at + ": names neither file nor surfaces; allowed: one of file and surfaces");
+    CHECK(error({{"surfaces", json::array()}}) == at + "/surfaces: is empty; allowed: at least one surface");
+    CHECK(error({{"surfaces", {{{"radius", 1}}}}}) ==
+          at + "/surfaces/0: has no \"semi_diameter\", which is required");
+    const json plane = {{"semi_diameter", 0.01}};
+    CHECK(error({{"surfaces", {{{"semi_diameter", 0.01}, {"material", "jelly"}}}}})
+              .starts_with(
+                  at + "/surfaces/0/material: no data of the glass 'jelly'; allowed: mirror, glasses of"));
+    const std::string surface = at + "/surfaces: surface 1: ";
+    CHECK(error({{"surfaces", {{{"radius", 0.01}, {"semi_diameter", 0.02}, {"ior", 1.5}}, plane}}})
+              .starts_with(surface + "its aperture reaches 20 mm from the axis"));
+    CHECK(error({{"surfaces",
+                  {{{"radius", 0.02}, {"thickness", 0.001}, {"semi_diameter", 0.01}, {"ior", 1.5}}, plane}}})
+              .find("cross") != std::string::npos);
+    json high = {
+        {"semi_diameter", 0.01}, {"ior", 1.5}, {"coefficients", json::array({0, 0, 0, 0, 0, 0, 0, 0, 1})}};
+    CHECK(error({{"surfaces", {high}}}).find("allowed in a scene: r⁴ to r¹⁸") != std::string::npos);
+    CHECK(error({{"file", "no.zmx"}}).find("no.zmx") != std::string::npos);
 }

@@ -183,6 +183,33 @@ TEST_CASE("examples to be measured: what their meters read") {
     }
 }
 
+// 0.688 of 1 lm, over the square that the fibre's meter is.
+TEST_CASE("example ball_lens: what gets into the second fibre") {
+    const Interval found = measure_example("ball_lens", "fibre", "mean", 64);
+    const double area = 0.0443e-3 * 0.0443e-3;
+    CHECK(found.value * area == doctest::Approx(0.6876).epsilon(0.003));
+}
+
+TEST_CASE("example spectrometer: its lines stand where the grating's equation and the focal length say") {
+    RenderPlan plan;
+    plan.width = 512, plan.height = 8, plan.passes = 256, plan.seeds = 2;
+    plan.receiver = "sensor", plan.algorithm = Algorithm::forward;
+    const Estimates e = render_estimates(import_gltf(example("spectrometer")), plan);
+    for (const double nm : {436, 546, 577, 579}) {
+        const double turn = std::asin(nm * 6e-4) - std::asin(0.33),
+                     column = 256 + 512 / 24.0 * 100.28 * std::tan(turn);
+        double sum = 0, moment = 0;
+        for (uint32_t x = uint32_t(column) - 1; x <= uint32_t(column) + 1; ++x)
+            for (uint32_t y = 0; y < 8; ++y) {
+                const double light = 0.2126 * e.at(x, y, 0) + 0.7152 * e.at(x, y, 1) + 0.0722 * e.at(x, y, 2);
+                sum += light, moment += light * (x + 0.5);
+            }
+        CAPTURE(nm);
+        CHECK(sum > 0);
+        CHECK(moment / sum == doctest::Approx(column).epsilon(0.6 / column));
+    }
+}
+
 // The closed forms of an integrating sphere: E = flux / area / (1 - reflectance (1 - open part)).
 TEST_CASE("example integrating_sphere: wall, port and spot") {
     const double wall = 1000 / std::numbers::pi / (1 - 0.95 * 0.99);

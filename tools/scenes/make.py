@@ -16,7 +16,7 @@ from elements import housing, light_guide, light_guide_fine
 from example import example
 from furnaces import furnace_closed, furnace_rough, furnace_smooth, spheres
 from grin import grin
-from lenses import double_gauss
+from lenses import ball_lens, double_gauss, spectrometer
 from lights import lamps, many_lights
 from manual import write_showcases
 from measured import integrating_sphere, led_lens, office, street
@@ -56,6 +56,8 @@ SCENES = [
     light_guide_fine,
     housing,
     double_gauss,
+    ball_lens,
+    spectrometer,
     furnace_smooth,
     furnace_rough,
     furnace_closed,
