@@ -125,11 +125,17 @@ nlohmann::json flux_balance(const RenderCounters& c, double power) {
     // Of passes that were made without --stats, and gone on from.
     if (std::fabs(c.absorbed - told) > 1e-4 * c.absorbed)
         absorbed_by["not told apart"] = (c.absorbed - told) * lumens;
+    nlohmann::json elements = nlohmann::json::object();
+    for (const auto& [name, power] : c.elements)
+        elements[name] = {{"entered", power.entered * lumens},
+                          {"left", power.left * lumens},
+                          {"absorbed", power.absorbed * lumens}};
     return {{"unit", "lm"},
             {"emitted", c.emitted * lumens},
             {"received", 0.0},
             {"absorbed", c.absorbed * lumens},
             {"absorbed_by", absorbed_by},
+            {"elements", elements},
             {"roulette", c.roulette * lumens},
             {"lost",
              {{"escaped", escaped},

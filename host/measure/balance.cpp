@@ -15,6 +15,11 @@ std::vector<BalanceLine> balance_of(const Measurement& measurement) {
     add("emitted", all.emitted, "by forward rays");
     add("absorbed", all.absorbed, "by surfaces and media");
     for (const auto& [name, flux] : all.absorbed_by) add("absorbed by " + name, flux, "of these");
+    for (const auto& [name, power] : all.elements) {
+        add("entered " + name, power.entered, "came into this element");
+        add("left " + name, power.left, "came out of it again, and of its lamps");
+        add("absorbed in " + name, power.absorbed, "within it, of the above");
+    }
     add("escaped", all.forward_escaped, "left the scene");
     add("lost", all.forward_depth_limit_lost, "at the depth limit");
     add("roulette", all.roulette, "taken by Russian roulette less what it gave back: noise around 0");

@@ -19,29 +19,6 @@ struct CounterSums {
     double flux_sum(int i) const { return double(int32_t(flux[2 * i])) + flux[2 * i + 1] / 4294967296.0; }
 };
 
-// Counters by the names under which a checkpoint keeps them.
-template <class Counters, class Visit>
-void visit_counters(Counters& c, Visit visit) {
-    visit("rays", c.rays);
-    visit("shadow_rays", c.shadow_rays);
-    visit("non_finite", c.non_finite);
-    visit("depth_limit", c.depth_limit);
-    visit("escaped", c.escaped);
-    visit("depth_limit_lost", c.depth_limit_lost);
-    visit("forward_paths", c.forward_paths);
-    visit("forward_paths_a_pass", c.forward_paths_a_pass);
-    visit("forward_rays", c.forward_rays);
-    visit("forward_shadow_rays", c.forward_shadow_rays);
-    visit("forward_non_finite", c.forward_non_finite);
-    visit("forward_depth_limit", c.forward_depth_limit);
-    visit("split_passes", c.split_passes);
-    visit("emitted", c.emitted);
-    visit("absorbed", c.absorbed);
-    visit("forward_escaped", c.forward_escaped);
-    visit("forward_depth_limit_lost", c.forward_depth_limit_lost);
-    visit("roulette", c.roulette);
-}
-
 // Kernels that no cache had: the driver has most likely not seen them either.
 std::vector<std::filesystem::path> newly_compiled(const Scene& scene) {
     std::vector<std::filesystem::path> files;
@@ -69,47 +46,6 @@ AlgorithmChoice choice_from_json(const nlohmann::json& json) {
     c.pilot_seconds = json.at("pilot_seconds");
     c.is_open = json.value("is_open", false);
     return c;
-}
-
-uint64_t all_rays(const RenderCounters& c) {
-    return c.rays + c.shadow_rays + c.forward_rays + c.forward_shadow_rays;
-}
-
-nlohmann::json to_json(const RenderCounters& counters) {
-    nlohmann::json json;
-    visit_counters(counters, [&](const char* name, auto value) { json[name] = value; });
-    if (!counters.absorbed_by.empty()) json["absorbed_by"] = counters.absorbed_by;
-    return json;
-}
-
-void add(RenderCounters& counters, const RenderCounters& more) {
-    std::vector<double> reals;
-    std::vector<uint64_t> counts;
-    const uint64_t paths_a_pass = std::max(counters.forward_paths_a_pass, more.forward_paths_a_pass);
-    visit_counters(more, [&](const char*, auto value) {
-        if constexpr (std::is_same_v<decltype(value), double>)
-            reals.push_back(value);
-        else
-            counts.push_back(value);
-    });
-    size_t real = 0, count = 0;
-    visit_counters(counters, [&](const char*, auto& value) {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, double>)
-            value += reals[real++];
-        else
-            value += counts[count++];
-    });
-    counters.forward_paths_a_pass = paths_a_pass;
-    for (const auto& [name, flux] : more.absorbed_by) counters.absorbed_by[name] += flux;
-}
-
-RenderCounters counters_from_json(const nlohmann::json& json) {
-    RenderCounters counters;
-    visit_counters(counters, [&](const char* name, auto& value) {
-        value = json.value(name, std::decay_t<decltype(value)>{});
-    });
-    counters.absorbed_by = json.value("absorbed_by", decltype(counters.absorbed_by){});
-    return counters;
 }
 
 // Measured on lavapipe (Mesa 25): state in registers always wins, by 1.1 (a thousand lights) to 2.8
@@ -287,7 +223,8 @@ uint32_t Renderer::passes_in(double seconds) const {
 
 void Renderer::clear_counter_sums() {
     counter_sums_.fill(0);
-    if (ledger_) ledger_->take();
+    RenderCounters unused;
+    if (ledger_) ledger_->take(unused.absorbed_by, unused.elements);
 }
 
 void Renderer::read_counters() {
@@ -312,8 +249,7 @@ void Renderer::read_counters() {
     counters_.emitted += sums.flux_sum(4);
     counters_.absorbed += sums.flux_sum(5);
     counters_.roulette += sums.flux_sum(6);
-    if (ledger_)
-        for (const auto& [name, flux] : ledger_->take()) counters_.absorbed_by[name] += flux;
+    if (ledger_) ledger_->take(counters_.absorbed_by, counters_.elements);
 }
 
 void Renderer::add_aovs(Image& image, uint32_t count, size_t view) {

@@ -65,6 +65,7 @@ bool scatter_forward_path(inout Path path, Hit hit, uint path_index, inout Count
     OPEN_LEDGER(entry, path)
     bool scatters = cross_medium(path, hit);
     Arrival a = arrive(path, before, hit, scatters, counters);
+    charge_crossing(entry, path);
     charge_medium(entry, luminance(path.throughput));
     bool is_event = a.is_event && !a.escapes, goes_on = a.lives;
     uint kind = EVENT_NONE;

@@ -75,3 +75,37 @@ TEST_CASE("what materials and media have absorbed is all that was absorbed") {
         }
     }
 }
+
+// A lamp of 100 lm before a plate of grey glass in an element, which also holds a lamp of its own.
+TEST_CASE("elements tell what entered and left them and what they absorbed") {
+    for (const bool shines : {false, true}) {
+        SceneBuilder s;
+        s.medium("grey glass", {{"ior", 1.5}, {"absorption", 20}});
+        const int glass = s.material({{"surface", {{"class", "dielectric"}}}, {"inside", "grey glass"}});
+        const int lamp = s.black_emitter(50);
+        const int inner = s.scene([&] {
+            add_box(s, {1, 1, 0.01f}, glass, false, at(0, 0, 0));
+            if (shines) s.sphere(0.1, lamp, at(0, 0, 0.5));
+        });
+        s.placed("element", {{"class", "subscene"}, {"scene", inner}}, at(0, 0, 0));
+        s.document["nodes"].back()["name"] = "pane";
+        s.placed("light", {{"class", "collimated"}, {"radius", 0.1}, {"power", 100}}, at(0, 0, 2));
+        s.perspective(1, at(0, 0, 5));
+        Scene scene = compile_test_scene(s.import());
+        const RenderCounters c = count(scene, Algorithm::forward, Schedule::automatic, 8, 16);
+        const ElementPower power = c.elements.at("pane");
+        CHECK(c.absorbed_by.at("medium grey glass") > 0.1 * c.emitted * (shines ? 0.3 : 1));
+        CHECK(power.absorbed >= c.absorbed_by.at("medium grey glass"));
+        const double emitted =
+            c.emitted - c.forward_escaped - c.absorbed - c.roulette - c.forward_depth_limit_lost;
+        CHECK(std::fabs(emitted) < 2e-6 * c.emitted);
+        if (shines) {
+            CHECK(power.left > power.entered);
+        } else {
+            // All light enters; what is not absorbed leaves.
+            CHECK(power.entered == doctest::Approx(c.emitted).epsilon(1e-6));
+            CHECK(power.left == doctest::Approx(c.forward_escaped).epsilon(1e-6));
+            CHECK(power.absorbed == doctest::Approx(c.absorbed).epsilon(1e-6));
+        }
+    }
+}
