@@ -91,6 +91,8 @@ std::string type_name(const Parameter& p) {
         {"MuellerMatrix", "16 numbers"},
         {"MuellerTableRef", "file"},
         {"GratingOrders", "list"},
+        {"MicroPlaces", "file"},
+        {"CellMesh", "index"},
         {"PhotometryRef", "file"},
         {"RayFileRef", "file"},
         {"WorldPoint", "point"},

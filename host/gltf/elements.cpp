@@ -70,47 +70,6 @@ void check_holds_not_itself(const GltfImport& import, uint32_t element, uint32_t
     }
 }
 
-// The only object of an element of class microstructure, within a box that it fills from side to side.
-void place_microstructure(GltfImport& import, const JsonAt& at) {
-    if (find(at, "cell"))
-        fail_at(member(at, "cell"), "cells hold no scenes in this version; allowed: a shape");
-    PlacedObject sheet{
-        "microstructure", {"microstructure", nlohmann::json::object(), at.pointer}, import.content_root};
-    for (const auto& [key, value] : at->items())
-        if (key != "class" && key != "material" && key != "density" && key != "scale" && key != "thickness")
-            sheet.object.parameters[key] = value;
-    if (const auto density = find(at, "density"); density && (*density)->is_object())
-        sheet.object.parameters["density_texture"] = read_texture_info(import, *density);
-    else if (density)
-        sheet.object.parameters["density"] = **density;
-    const double scale = number(at, "scale", 1, 1e-9, 1e9);
-    const double radius = scale * number_value(member(at, "radius"), 0, max_coordinate),
-                 depth = scale * number_value(member(at, "depth"), 0, max_coordinate);
-    sheet.object.parameters["radius"] = radius, sheet.object.parameters["depth"] = depth;
-    const auto material = index(at, "material", array_size(import.root, "materials"), "/materials");
-    sheet.material = material ? *material : default_material(import);
-    import.scene.shapes.push_back(sheet);
-
-    const std::vector<double> size = number_array(member(at, "size"), 2, 0, max_coordinate);
-    const bool is_dent = text(at, "operation", "add") == "remove";
-    const double thickness = number(at, "thickness", 1.01 * depth, depth, max_coordinate),
-                 beyond = 0.01 * depth;
-    const glm::vec3 half(0.5 * size[0], 0.5 * size[1], 0);
-    const float lo = float(is_dent ? -thickness : -beyond), hi = float(is_dent ? beyond : thickness);
-    MeshDescription box;
-    box.name = "boundary", box.where = at.pointer;
-    for (int i = 0; i < 8; ++i)
-        box.positions.push_back({i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? hi : lo});
-    box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    import.scene.contents.back().boundary = {
-        { uint32_t(import.scene.meshes.size()),
-          import.content_root,
-          at.pointer }};
-    import.mesh_bounds.push_back({glm::dvec3(-half.x, -half.y, lo), glm::dvec3(half.x, half.y, hi)});
-    import.scene.meshes.push_back(std::move(box));
-}
-
 // What an element holds, as a new content.
 void place_content(GltfImport& import, uint32_t element) {
     SceneDescription& scene = import.scene;

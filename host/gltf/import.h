@@ -111,8 +111,9 @@ struct GltfImport {
     size_t deformed_vertices = 0;     // of meshes that are made for a node alone
     std::optional<uint32_t> variant;  // of materials, that is wanted
     glm::dmat4 content_root{
-        1.0};             // of the nodes that are being placed: of elements what scales their contents
-    uint32_t holder = 0;  // of them: 0 = the scene, i = element i - 1
+        1.0};                 // of the nodes that are being placed: of elements what scales their contents
+    uint32_t holder = 0;      // of them: 0 = the scene, i = element i - 1
+    bool reads_cell = false;  // the nodes that are being placed stand in the cells of a microstructure
     std::vector<ElementImport> elements;  // that stand in the file, in the order of scene.elements
     std::vector<MeshRange> mesh_ranges;   // per glTF mesh, read when a node first uses it undeformed
     std::vector<Bounds> mesh_bounds;      // per SceneDescription::meshes
@@ -229,6 +230,11 @@ void load_elements(GltfImport& import, uint32_t root_scene);  // what they hold
 
 // lens_elements.cpp: the surfaces, housing and media of an element of class lens_system, placed in its frame.
 void place_lens_system(GltfImport& import, const JsonAt& at);
+// microstructures.cpp
+// Of a sheet of class microstructure: "placement" and "cell" as its record has them; reads what they name.
+void name_parts(GltfImport& import, const JsonAt& at, nlohmann::json& parameters);
+// The only object of an element of that class, within a box that it fills from side to side.
+void place_microstructure(GltfImport& import, const JsonAt& at);
 
 // nodes.cpp
 void load_nodes(GltfImport& import);

@@ -247,6 +247,8 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
                                          : object_description(import, *at, {}),
                             world_from_local};
         read_stokes(object);
+        if (is_geometry && object.object.class_name == "microstructure")
+            name_parts(import, *at, object.object.parameters);
         if (is_receiver && object.object.class_name == "surface") name_watched(*at, object.object);
         if (is_light && (*optics)->contains("geometry"))
             object.shape = uint32_t(import.scene.shapes.size() - 1);

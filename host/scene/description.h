@@ -76,6 +76,13 @@ struct MeshInstance {
     uint32_t content = 0;
 };
 
+// The triangles that stand in each cell of a microstructure, in the frame of the cell: three corners each.
+struct CellDescription {
+    std::vector<glm::vec3> corners;  // m
+    uint32_t scene = 0;              // of the file, that they are from
+};
+constexpr size_t most_cell_triangles = (1 << 22) - 1;  // the device has four numbers for each, in a float
+
 // An object placed by a node: a geometry with its material, a light or a receiver.
 struct PlacedObject {
     std::string name;
@@ -163,6 +170,7 @@ struct SceneDescription : SceneObjects {
     std::vector<ImageDescription> images;
     std::vector<TextureDescription> textures;
     std::vector<MeshDescription> meshes;
+    std::vector<CellDescription> cells;
     std::vector<std::string> variants;  // of its materials, by KHR_materials_variants
     double animation_seconds = 0;       // the end of its last animation; 0 = it has none
     // Contents of files that stand in the scene file itself, by the names that parameters have for them.

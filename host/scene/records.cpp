@@ -151,6 +151,16 @@ void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value
     } else if (type == "MuellerTableRef") {
         if (!value.is_string()) fail_input("{}: allowed: the name of a .pbsdf file", place);
         store(record, at, resolver.mueller_table(value.get<std::string>()));
+    } else if (type == "MicroPlaces") {
+        if (!value.is_string() && !value.is_null())
+            fail_input("{}: allowed: the name of a file of places", place);
+        store(record, at,
+              value.is_null() ? MicroPlaces{} : resolver.places(value.get<std::string>(), info, record));
+    } else if (type == "CellMesh") {  // the importer has read the scene
+        const auto number = value.is_number_unsigned() ? value.get<uint64_t>() : resolver.scene.cells.size();
+        if (!value.is_null() && number >= resolver.scene.cells.size())
+            fail_input("{}: allowed: the index of a scene, in a scene file", place);
+        store(record, at, value.is_null() ? CellMesh{} : resolver.cell(uint32_t(number)));
     } else if (type == "GratingOrders") {
         store(record, at, resolver.grating(value, where));
     } else {
@@ -246,6 +256,15 @@ void add_measured_kinds(const std::vector<std::byte>& records, uint32_t stride, 
 
 }  // namespace
 
+// Its first number, of each record.
+static std::vector<uint32_t> first_numbers(const std::vector<std::byte>& records, uint32_t stride,
+                                           const MemberLayout& member) {
+    std::vector<uint32_t> numbers(records.size() / stride);
+    for (size_t i = 0; i < numbers.size(); ++i)
+        std::memcpy(&numbers[i], &records[i * stride + member.offset], sizeof(uint32_t));
+    return numbers;
+}
+
 ClassConstants RecordBuffer::constant_members(const ClassInfo& info,
                                               const std::set<std::string>& varying) const {
     const auto region = regions_.find(info.name);
@@ -255,6 +274,10 @@ ClassConstants RecordBuffer::constant_members(const ClassInfo& info,
     for (const Parameter& p : info.parameters) {
         const std::string &type = p.member.type, &name = p.member.name;
         if (type == "MeasuredRef") add_measured_kinds(records, info.stride, p.member, constants);
+        static_assert(offsetof(CellMesh, nodes) == 0);
+        if (type == "CellMesh" &&
+            std::ranges::none_of(first_numbers(records, info.stride, p.member), std::identity{}))
+            constants.statements += fmt::format("r.{}.nodes = 0u; ", name);
         const int length = vector_length(type);
         if (!p.from_scene || (p.member.size != 4 && !length)) continue;
         if (varying.count(member_path(info, name))) continue;

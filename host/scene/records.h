@@ -15,8 +15,10 @@
 #include "host/mie/mie_table.h"
 #include "host/photometry/photometric_table.h"
 #include "host/photometry/ray_set.h"
+#include "host/scene/cell_mesh.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
+#include "host/scene/micro_places.h"
 #include "host/scene/watched_surface.h"
 #include "host/lights/environment_map.h"
 #include "host/lights/sky.h"
@@ -63,6 +65,14 @@ struct RecordResolver {
     // The orders of a grating and what each of them carries.
     std::function<GratingOrders(const nlohmann::json& value, const std::string& where)> grating =
         [](const nlohmann::json&, const std::string&) { return GratingOrders{}; };
+    // Of the elements of a microstructure, whose parameters before that are filled already.
+    std::function<MicroPlaces(const std::filesystem::path& file, const ClassInfo& info,
+                              const std::vector<std::byte>& record)>
+        places = [](const std::filesystem::path&, const ClassInfo&, const std::vector<std::byte>&) {
+            return MicroPlaces{};
+        };
+    // Of SceneDescription::cells.
+    std::function<CellMesh(uint32_t cell)> cell = [](uint32_t) { return CellMesh{}; };
     std::function<PhotometryRef(const std::filesystem::path& file)> photometry =
         [](const std::filesystem::path&) { return PhotometryRef{}; };
     // Primitive of the shape at the node of the light that is being added.

@@ -42,6 +42,11 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
     resolver_.grating = [this](const nlohmann::json& value, const std::string& where) {
         return append(grating_orders_, read_grating_orders(value, in_, where, resolver_.spectrum));
     };
+    resolver_.places = [this](const std::filesystem::path& file, const ClassInfo& info,
+                              const std::vector<std::byte>& record) {
+        return add_places(file, info, record);
+    };
+    resolver_.cell = [this](uint32_t cell) { return add_cell(cell); };
     resolver_.own_shape = [this](const std::string& where) { return own_shape(where); };
     resolver_.photometry = [this](const std::filesystem::path& file) { return add_photometry(file); };
     resolver_.watched = [this](const std::string& mesh, const std::string& where) {

@@ -25,6 +25,10 @@ enum MaterialFlag : uint32_t {
     blocks = 16
 };
 
+// Fails where elements of a sheet of microstructure would be cut off, or have no shape.
+void check_microstructure(const ClassInfo& info, const ObjectDescription& object, const std::string& place);
+MicroSheet micro_sheet(const ClassInfo& info, const std::vector<std::byte>& record);
+
 class SceneCompiler {
   public:
     SceneCompiler(Device& device, const SceneDescription& description, const SceneOptions& options,
@@ -98,6 +102,12 @@ class SceneCompiler {
     void add_receivers();
     WatchedSurface add_watched(const std::string& mesh, const std::string& where);
     glm::dmat4 recentred(const glm::dmat4& world_from_local, uint32_t content) const;
+
+    // scene_microstructures.cpp
+    MicroPlaces add_places(const std::filesystem::path& file, const ClassInfo& info,
+                           const std::vector<std::byte>& record);
+    CellMesh add_cell(uint32_t cell);
+    void upload_microstructures();
 
     // scene_lights.cpp
     uint32_t own_shape(const std::string& where);

@@ -15,34 +15,6 @@ glm::dmat4 SceneCompiler::recentred(const glm::dmat4& world_from_local, uint32_t
     return result;
 }
 
-// Elements of a microstructure that reach out of their cells would be cut off there.
-static void check_cells(const ClassInfo& info, const ObjectDescription& object, const std::string& place) {
-    const auto value = [&](const char* name) {
-        const auto parameter = std::ranges::find(info.parameters, std::string(name),
-                                                 [](const Parameter& p) { return p.member.name; });
-        return object.parameters.value(name, parameter->default_value);
-    };
-    const auto size = value("size").get<std::vector<double>>(),
-               pitch = value("pitch").get<std::vector<double>>();
-    const std::string shape = value("shape");
-    const bool is_ridge = shape == "groove" || shape == "lens", is_round = shape == "dome" || shape == "lens";
-    const double radius = value("radius"), depth = value("depth"), turn = value("turn"), least = 1 - 1e-6;
-    const double reach =
-        radius * (shape == "prism" ? std::abs(std::cos(turn)) + std::abs(std::sin(turn)) : 1.0);
-    for (size_t axis = 0; axis < (is_ridge ? 1 : 2); ++axis) {
-        if (2 * reach * least > pitch[axis])
-            fail_input(
-                "{}/radius: elements are {:g} m wide and reach beyond their cells of {:g} m; allowed: at "
-                "most {:g}",
-                place, 2 * reach, pitch[axis], radius * pitch[axis] / (2 * reach));
-        if (pitch[axis] * least > size[axis])
-            fail_input("{}/pitch: {:g} m is more than the size of {:g} m", place, pitch[axis], size[axis]);
-    }
-    if (is_round && depth * least > radius)
-        fail_input("{}/depth: {:g} m; allowed for a {}: at most the radius of {:g} m", place, depth, shape,
-                   radius);
-}
-
 // Of a disk or an asphere.
 static void check_hole(const ObjectDescription& object, const std::string& place) {
     if (!object.parameters.contains("hole")) return;
@@ -62,8 +34,9 @@ void SceneCompiler::add_geometry() {
             fail_input("{}/material: emits light, which a {} cannot; allowed: a material that does not",
                        message_place(in_, shape.object.where), shape.object.class_name);
         if (shape.object.class_name == "microstructure")
-            check_cells(*shapes.back().info, shape.object, message_place(in_, shape.object.where));
+            check_microstructure(*shapes.back().info, shape.object, message_place(in_, shape.object.where));
     }
+    upload_microstructures();
     const auto refs = references(Interface::geometry, shapes);
     const std::vector<Box> bounds = shape_bounds(refs);
     const uint64_t key = world_key(bounds);

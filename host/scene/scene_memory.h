@@ -14,6 +14,7 @@
 #include "host/measured/measured_bsdf.h"
 #include "host/measured/mueller_table.h"
 #include "host/mie/mie_table.h"
+#include "host/scene/cell_mesh.h"
 #include "host/scene/classes.h"
 #include "host/photometry/photometric_table.h"
 #include "host/photometry/ray_set.h"
@@ -21,6 +22,7 @@
 #include "host/lights/emission_map.h"
 #include "host/lights/environment_map.h"
 #include "host/scene/features.h"
+#include "host/scene/micro_places.h"
 #include "host/scene/texture_pack.h"
 #include "host/geometry/world.h"
 
@@ -58,6 +60,10 @@ struct SceneMemory {
     std::map<std::filesystem::path, MeasuredFile> measured_files;
     MuellerTables mueller_tables;
     std::map<std::filesystem::path, MuellerFile> mueller_files;
+    MicroTables micro_tables;
+    std::map<std::string, MicroPlaces> micro_files;  // by file and sheet
+    CellTables cell_tables;
+    std::map<uint32_t, CellMesh> cells;  // of SceneDescription::cells
     std::vector<std::shared_ptr<const MieTable>> mie_tables;  // of the last compilation
 
     uint64_t world_key = 0;

@@ -302,7 +302,7 @@ class ClassProbe {
             std::memcpy(record.data(), &triangle, sizeof triangle);
         } else {
             const SceneDescription scene;
-            record = fill_record(*info, {name, parameters, "/geometry"}, {}, {scene, {}, {}, {}});
+            record = fill_record(*info, {name, parameters, "/geometry"}, {}, micro_.resolver(scene));
         }
         RecordBuffer records;
         records.add(*info, record);
@@ -354,12 +354,14 @@ class ClassProbe {
     void run(const CompiledShader& shader, BufferTable buffers, uint32_t count,
              std::initializer_list<PushValue> values) {
         buffers[interface_info(Interface::geometry).buffer] = &records_;
+        micro_.bind(buffers);
         const Kernel kernel(test_device(), shader, buffers);
         CommandList list(test_device());
         list.dispatch(kernel, (count + 63) / 64, values);
         list.run();
     }
     ClassRegistry registry_;
+    MicroProbe micro_;
     ShaderSources sources_;
     CompiledShader sample_, meet_;
     Buffer records_;

@@ -100,11 +100,48 @@ TEST_CASE("an element of microstructure is a sheet in a box that it fills") {
     CHECK(low < -0.002f);
     CHECK(high > 0);
 
-    json cells = sheet;
-    cells["cell"] = 1;
-    CHECK(import_error(with_element(cells).glb()) ==
-          "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element/cell: "
-          "cells hold no scenes in this version; allowed: a shape");
+    const std::string at = "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element";
+    const auto error = [&](json more, const char* without) {
+        json element = sheet;
+        element.update(more);
+        for (const char* name : {without, "density", "scale"}) element.erase(name);
+        return import_error(with_element(std::move(element)).glb());
+    };
+    CHECK(error({{"placement", {{"file", "dots.txt"}}}}, "") ==
+          at + "/pitch: is not for places from a file; allowed: without");
+    CHECK(error({{"placement", "file"}}, "") == at + "/placement: is \"file\"; allowed: {\"file\": NAME}");
+    CHECK(error({{"cell_size", 2}}, "") == at + "/cell_size: is not for shapes; allowed: without");
+    CHECK(error({{"cell", 1}}, "") == at + "/radius: is not for cells that hold a scene; allowed: without");
+}
+
+TEST_CASE("the meshes of a scene stand in the cells of a sheet") {
+    const auto with_cell = [](json more) {
+        json sheet = {{"class", "microstructure"}, {"size", {4, 4}}, {"pitch", {2, 2}}, {"cell", 1}};
+        sheet.update(more);
+        GltfBuilder b = with_element(sheet);
+        b.triangle();
+        b.document["nodes"][1] = {{"mesh", 0}};
+        b.document["scenes"][0]["nodes"] = {0};
+        return b;
+    };
+    const SceneDescription s = with_cell({{"cell_size", 0.5}}).import();
+    REQUIRE(s.cells.size() == 1);
+    CHECK(s.cells[0].corners.size() == 3);
+    CHECK(s.instances.empty());
+    CHECK(s.shapes.at(0).object.parameters["cell"] == 0);
+    float reach = 0;
+    for (const glm::vec3& p : s.cells[0].corners) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
+    CHECK(reach == 0.5f);
+
+    const std::string at = "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element/cell";
+    CHECK(import_error(with_cell({{"cell_size", 3}}).glb()).starts_with(at + ": scene 1 reaches to "));
+    GltfBuilder other = with_cell(json::object());
+    other.document["nodes"][1] = {
+        {"extensions", {{"ETD_optics", {{"geometry", {{"class", "sphere"}, {"radius", 1}}}}}}}};
+    CHECK(import_error(other.glb()) ==
+          at + ": scene 1 has shapes, lamps, receivers or elements; allowed in cells: meshes");
+    CHECK(import_error(with_cell({{"placement", "jittered"}}).glb())
+              .ends_with("/placement: cells that hold a scene fill their places; allowed: grid, staggered"));
 }
 
 TEST_CASE("an element of a lens is its surfaces, rims and housing, and its glasses as media") {

@@ -115,11 +115,16 @@ void GeometryProbe::add_shape(const std::string& class_name, const nlohmann::jso
                               const Box& local, const glm::dmat4& world_from_local) {
     const ClassInfo* info = registry_.find(Interface::geometry, class_name);
     REQUIRE(info);
-    const RecordResolver resolver{scene_, {}, {}, {}};
+    const RecordResolver resolver = micro_.resolver(scene_);
     scene_.shapes.push_back({class_name, {class_name, parameters, "/geometry"}, world_from_local, 0});
     place(world_from_local, PrimitiveKind::shape, local);
     shapes_.back() = {info, records_.count(*info)};
     records_.add(*info, fill_record(*info, {class_name, parameters, "/geometry"}, {}, resolver));
+}
+
+uint32_t GeometryProbe::add_cell(const std::vector<glm::vec3>& corners) {
+    scene_.cells.push_back({corners});
+    return uint32_t(scene_.cells.size() - 1);
 }
 
 uint32_t GeometryProbe::add_mesh(const std::vector<glm::vec3>& vertices) {
@@ -204,6 +209,7 @@ Kernel GeometryProbe::kernel(const std::string& name, const std::string& text, B
     buffers["Primitives"] = &primitives_;
     buffers["Transforms"] = &transforms_;
     buffers[interface_info(Interface::geometry).buffer] = &geometry_;
+    micro_.bind(buffers);
     return Kernel(test_device(), compile_shader(sources, name, options), buffers);
 }
 

@@ -10,6 +10,7 @@
 #include "host/geometry/unrolled_traversal.h"
 #include "host/geometry/world.h"
 #include "tests/support/device_fixture.h"
+#include "tests/support/micro_probe.h"
 
 namespace etendue {
 
@@ -41,7 +42,9 @@ class GeometryProbe {
     // `parameters` of the class as a scene gives them, `local` its box.
     void add_shape(const std::string& class_name, const nlohmann::json& parameters, const Box& local,
                    const glm::dmat4& world_from_local);
-    uint32_t add_mesh(const std::vector<glm::vec3>& vertices);  // three a triangle, for instances
+    uint32_t add_cell(const std::vector<glm::vec3>& corners);      // for the parameter of that name
+    const MicroTables& places() const { return micro_.places(); }  // of files that parameters have named
+    uint32_t add_mesh(const std::vector<glm::vec3>& vertices);     // three a triangle, for instances
     void add_instance(uint32_t mesh, const glm::dmat4& world_from_local);
 
     // Builds the hierarchies and compiles what the world needs.
@@ -68,6 +71,7 @@ class GeometryProbe {
 
     ClassRegistry registry_;
     RecordBuffer records_;
+    MicroProbe micro_;
     std::vector<std::pair<const ClassInfo*, uint32_t>> shapes_;  // class and index in it, by transform
     std::vector<Mesh> meshes_;
     std::vector<uint32_t> instance_meshes_;  // by transform
