@@ -51,7 +51,7 @@ CellDescription read_cell(GltfImport& import, const JsonAt& at, uint32_t number,
 // What an element's parameters are made of where a scene stands in its cells.
 void name_cell(GltfImport& import, const JsonAt& at, json& parameters) {
     const JsonAt cell_at = member(at, "cell");
-    refuse(at, {"shape", "radius", "depth", "operation", "spread", "turn", "scale"},
+    refuse(at, {"shape", "radius", "depth", "operation", "spread", "turn", "scale", "bend"},
            "cells that hold a scene");
     if (parameters.contains("placement") && parameters["placement"] != "grid" &&
         parameters["placement"] != "staggered")
@@ -110,6 +110,8 @@ void place_microstructure(GltfImport& import, const JsonAt& at) {
         parameters["density_texture"] = read_texture_info(import, *density);
     else if (density)
         parameters["density"] = **density;
+    if (const auto bend = find(at, "bend"))
+        fail_at(*bend, "is not for a sheet in a box; allowed: in a geometry of a scene that an element holds");
     const double scale = number(at, "scale", 1, 1e-9, 1e9);
     const std::vector<double> size = number_array(member(at, "size"), 2, 0, max_coordinate);
     name_parts(import, at, parameters);

@@ -1,12 +1,45 @@
 // What sheets of microstructure read beside their records: places from files, triangles of cells.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "host/error.h"
 #include "host/scene/scene_compiler.h"
 #include "host/scene/scene_files.h"
 
 namespace etendue {
+
+// Half the width of an element's foot along x, which leaves its tangent plane on a sheet that is bent, m;
+// none: it never comes to the sheet. `bend` as the record has it.
+static std::optional<double> foot(uint32_t shape, double radius, double depth, double bend, bool adds) {
+    const double toward = adds == (bend > 0) ? 0.5 / std::abs(bend) : -0.5 / std::abs(bend);
+    if (bend == 0) return radius;
+    if (shape == 0 || shape == 4) {
+        const double narrows = depth / (radius * radius + depth * depth) - toward;
+        if (narrows > 0) return std::max(std::sqrt(depth / narrows), radius);
+        return {};
+    }
+    const double slope = depth / radius, rest = slope * slope - 4 * toward * depth;
+    if (rest > 0) return 2 * depth / (slope + std::sqrt(rest));
+    return {};
+}
+
+// Of elements on a cylinder that are too large for it.
+static void check_bend(const std::string& shape, uint32_t number, double radius, double depth, double bend,
+                       bool adds, double width, const std::string& place) {
+    if (bend == 0) return;
+    const double around = 2 * M_PI * std::abs(bend);
+    if (width > around * (1 + 1e-6))
+        fail_input("{}/size: {:g} m goes more than once around the cylinder; allowed: at most {:g}", place,
+                   width, around);
+    if (std::max(radius, depth) > 0.25 * std::abs(bend))
+        fail_input("{}/bend: {:g} m; allowed: at least four times the radius and depth of elements", place,
+                   bend);
+    if (!foot(number, radius, depth, bend, adds))
+        fail_input(
+            "{}/bend: {:g} m: each {} is flatter than the cylinder; allowed: steeper ones, or a larger bend",
+            place, bend, shape);
+}
 
 // Elements of a microstructure that reach out of their cells would be cut off there.
 void check_microstructure(const ClassInfo& info, const ObjectDescription& object, const std::string& place) {
@@ -20,9 +53,17 @@ void check_microstructure(const ClassInfo& info, const ObjectDescription& object
                pitch = value("pitch").get<std::vector<double>>();
     const std::string shape = value("shape");
     const bool is_ridge = shape == "groove" || shape == "lens", is_round = shape == "dome" || shape == "lens";
-    const double radius = value("radius"), depth = value("depth"), turn = value("turn"), least = 1 - 1e-6;
-    const double reach =
-        radius * (shape == "prism" ? std::abs(std::cos(turn)) + std::abs(std::sin(turn)) : 1.0);
+    const double radius = value("radius"), depth = value("depth"), turn = value("turn"), bend = value("bend"),
+                 least = 1 - 1e-6;
+    const auto& names = std::ranges::find(info.parameters, "shape", [](const Parameter& p) {
+                            return p.member.name;
+                        })->choices;
+    const auto number = uint32_t(std::ranges::find(names, shape) - names.begin());
+    const bool adds = value("operation") == "add";
+    check_bend(shape, number, radius, depth, bend, adds, size[0], place);
+    const double widening = *foot(number, radius, depth, bend, adds) / radius;
+    const double reach = radius * std::max(widening, 1.0) *
+                         (shape == "prism" ? std::abs(std::cos(turn)) + std::abs(std::sin(turn)) : 1.0);
     for (size_t axis = 0; axis < (is_ridge ? 1 : 2); ++axis) {
         if (2 * reach * least > pitch[axis])
             fail_input(
@@ -41,6 +82,10 @@ MicroSheet micro_sheet(const ClassInfo& info, const std::vector<std::byte>& reco
     const auto number = [&](const char* name) { return record_member<float>(info, record, name); };
     const auto shape = record_member<uint32_t>(info, record, "shape");
     MicroSheet sheet{record_member<glm::vec2>(info, record, "size"), number("radius"), number("turn")};
+    const bool adds = record_member<uint32_t>(info, record, "operation") == 0;
+    sheet.radius =
+        std::max(sheet.radius,
+                 foot(shape, sheet.radius, number("depth"), number("bend"), adds).value_or(sheet.radius));
     if (shape == 2) sheet.foot = MicroSheet::square;  // as in shaders/lib/micro_shapes.glsl
     if (shape > 2) sheet.foot = MicroSheet::strip;
     return sheet;

@@ -81,3 +81,13 @@ vec3 micro_normal(uint shape, float radius, float depth, vec2 q, out float z) {
     z = depth * (1.0 - distance / radius);
     return vec3(distance > 0.0 ? away / distance * depth : vec2(0), radius);
 }
+
+// Is a point within the shape, continued below its foot? In its axes.
+bool micro_holds(uint shape, float radius, float depth, vec3 q) {
+    if (shape == MICRO_DOME || shape == MICRO_LENS) {
+        q.z -= depth;
+        if (shape == MICRO_LENS) q.y = 0.0;
+        return dot(q, q) + 2.0 * micro_curvature_radius(radius, depth) * q.z < 0.0;
+    }
+    return micro_covers(shape, radius * (1.0 - q.z / depth), q.xy) && q.z < depth;
+}

@@ -110,6 +110,8 @@ TEST_CASE("an element of microstructure is a sheet in a box that it fills") {
     CHECK(error({{"placement", {{"file", "dots.txt"}}}}, "") ==
           at + "/pitch: is not for places from a file; allowed: without");
     CHECK(error({{"placement", "file"}}, "") == at + "/placement: is \"file\"; allowed: {\"file\": NAME}");
+    CHECK(error({{"bend", 1}}, "") ==
+          at + "/bend: is not for a sheet in a box; allowed: in a geometry of a scene that an element holds");
     CHECK(error({{"cell_size", 2}}, "") == at + "/cell_size: is not for shapes; allowed: without");
     CHECK(error({{"cell", 1}}, "") == at + "/radius: is not for cells that hold a scene; allowed: without");
 }
