@@ -14,6 +14,7 @@
     X(4, Rectangle, rectangle) \
     X(5, Cylinder, cylinder)   \
     X(6, Asphere, asphere)     \
+    X(7, BezierPatch, bezier_patch) \
     X(9, Microstructure, microstructure)
 
 // folder lights/, contract interfaces/light_source.glsl

@@ -93,6 +93,7 @@ std::string type_name(const Parameter& p) {
         {"GratingOrders", "list"},
         {"MicroPlaces", "file"},
         {"CellMesh", "index"},
+        {"BezierPiece", "list"},
         {"PhotometryRef", "file"},
         {"RayFileRef", "file"},
         {"WorldPoint", "point"},

@@ -181,9 +181,15 @@ TransformRecord transform_record(const glm::dmat4& world_from_local) {
     return record;
 }
 
-World build_world(const SceneDescription& scene, const std::vector<Box>& shape_bounds,
-                  const std::vector<uint32_t>& shape_refs, unsigned threads, Features& features) {
+World build_world(const SceneDescription& scene, const std::vector<ShapePart>& parts, unsigned threads,
+                  Features& features) {
     World world;
+    std::vector<Box> shape_bounds(scene.shapes.size());
+    std::vector<size_t> first_part(scene.shapes.size() + 1, parts.size());
+    for (size_t i = parts.size(); i-- > 0;) {
+        shape_bounds[parts[i].shape].grow(parts[i].bounds);
+        first_part[parts[i].shape] = i;
+    }
     Builder builder(scene, world, threads);
     std::vector<uint32_t> all_placed;
     std::vector<Box> local_bounds;
@@ -225,6 +231,7 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
         for (const PrimitiveRecord& p : primitives) boxes.push_back(triangle_box(p));
         features.triangles |= !primitives.empty();
 
+        // With the transform that comes next.
         const auto place = [&](const glm::dmat4& world_from_local, PrimitiveKind kind, uint32_t word,
                                uint32_t material, const Box& local) {
             PrimitiveRecord p{};
@@ -237,12 +244,15 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
             Box box;
             grow_transformed(box, world_from_local, local);
             boxes.push_back(widened(box));
-            world.transforms.push_back(transform_record(world_from_local));
         };
         for (const uint32_t i : placing.shapes(content)) {
-            place(recentre * scene.shapes[i].world_from_local, PrimitiveKind::shape, shape_refs[i],
-                  scene.shapes[i].material, shape_bounds[i]);
-            placed.push_back(uint32_t(scene.instances.size() + i));
+            const glm::dmat4 world_from_local = recentre * scene.shapes[i].world_from_local;
+            for (size_t k = first_part[i]; k < first_part[i + 1]; ++k) {
+                place(world_from_local, PrimitiveKind::shape, parts[k].ref, scene.shapes[i].material,
+                      parts[k].bounds);
+                placed.push_back(uint32_t(scene.instances.size() + i));
+            }
+            world.transforms.push_back(transform_record(world_from_local));
             features.shapes = true;
         }
         // Instances point to the header of their mesh's tree, which is built behind the world's: patched
@@ -252,6 +262,7 @@ World build_world(const SceneDescription& scene, const std::vector<Box>& shape_b
             if (!merged(instance.mesh) && !local_bounds[instance.mesh].empty()) {
                 place(recentre * instance.world_from_local, PrimitiveKind::instance, instance.mesh, 0,
                       local_bounds[instance.mesh]);
+                world.transforms.push_back(transform_record(recentre * instance.world_from_local));
                 placed.push_back(i);
                 features.instances = true;
                 ++world.instances;

@@ -62,10 +62,16 @@ struct World {
 enum class PrimitiveKind : uint32_t { triangle = 0, shape = 1, instance = 2, boundary = 3 };
 constexpr PrimitiveKind primitive_kind(const PrimitiveRecord& p) { return PrimitiveKind(p.attributes >> 30); }
 
-// `shape_bounds`: local boxes of scene.shapes. `shape_refs`: RecordRefs of their geometries. Sets the
-// geometry's features.
-World build_world(const SceneDescription& scene, const std::vector<Box>& shape_bounds,
-                  const std::vector<uint32_t>& shape_refs, unsigned threads, Features& features);
+// What rays meet of a shape: all of it, or one of the pieces that the host has cut it into.
+struct ShapePart {
+    uint32_t shape = 0;  // index into SceneDescription::shapes
+    uint32_t ref = 0;    // RecordRef of its geometry
+    Box bounds;          // in the shape's frame
+};
+
+// `parts`: of scene.shapes, in their order, at least one each. Sets the geometry's features.
+World build_world(const SceneDescription& scene, const std::vector<ShapePart>& parts, unsigned threads,
+                  Features& features);
 
 TransformRecord transform_record(const glm::dmat4& world_from_local);
 

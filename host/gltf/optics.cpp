@@ -4,6 +4,7 @@
 
 #include "host/gltf/import.h"
 #include "host/gltf/light_layers.h"
+#include "host/gltf/splines.h"
 
 namespace etendue {
 namespace {
@@ -249,6 +250,10 @@ void read_node_optics(GltfImport& import, const JsonAt& node, const glm::dmat4& 
         read_stokes(object);
         if (is_geometry && object.object.class_name == "microstructure")
             name_parts(import, *at, object.object.parameters);
+        if (is_geometry && object.object.class_name == "nurbs_patch") {
+            object.object.class_name = "bezier_patch";
+            object.object.parameters = {{"control_points", patches_of_spline(*at)}};
+        }
         if (is_receiver && object.object.class_name == "surface") name_watched(*at, object.object);
         if (is_light && (*optics)->contains("geometry"))
             object.shape = uint32_t(import.scene.shapes.size() - 1);

@@ -103,6 +103,9 @@ void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value
             fail_input("{}: allowed: an array of at most 8 numbers, the coefficients of r^4, r^6, …", place);
         for (size_t i = 0; i < value.size(); ++i)
             store(record, at + 4 * uint32_t(i), checked_number(value[i], p, fmt::format("{}/{}", place, i)));
+    } else if (type == "BezierPiece") {
+        const auto only = [&] { return cut_bezier_patches(read_bezier_patches(value, place), place).front(); };
+        store(record, at, resolver.piece ? *resolver.piece : only());
     } else if (type == "MuellerMatrix") {
         if (!value.is_array() || value.size() != 16)
             fail_input("{}: allowed: an array of 16 numbers, row by row", place);

@@ -15,6 +15,7 @@
 #include "host/mie/mie_table.h"
 #include "host/photometry/photometric_table.h"
 #include "host/photometry/ray_set.h"
+#include "host/geometry/bezier_pieces.h"
 #include "host/scene/cell_mesh.h"
 #include "host/scene/classes.h"
 #include "host/scene/description.h"
@@ -73,6 +74,8 @@ struct RecordResolver {
         };
     // Of SceneDescription::cells.
     std::function<CellMesh(uint32_t cell)> cell = [](uint32_t) { return CellMesh{}; };
+    // Of a patch: the piece that the record is of; null = the only one.
+    const BezierPiece* piece = nullptr;
     std::function<PhotometryRef(const std::filesystem::path& file)> photometry =
         [](const std::filesystem::path&) { return PhotometryRef{}; };
     // Primitive of the shape at the node of the light that is being added.

@@ -96,8 +96,8 @@ class SceneCompiler {
 
     // scene_geometry.cpp
     void add_geometry();  // and where its centre is, from which positions are measured
-    uint64_t world_key(const std::vector<Box>& shape_bounds) const;
-    std::vector<Box> shape_bounds(const std::vector<uint32_t>& refs);
+    uint64_t world_key(const std::vector<ShapePart>& parts) const;
+    void find_bounds(std::vector<ShapePart>& parts);
     void upload_world();
     void add_receivers();
     WatchedSurface add_watched(const std::string& mesh, const std::string& where);

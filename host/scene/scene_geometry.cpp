@@ -24,10 +24,31 @@ static void check_hole(const ObjectDescription& object, const std::string& place
         fail_input("{}/hole: {:g} m; allowed: less than the radius of the rim, {:g} m", place, hole, rim);
 }
 
+// Of an object that the host cuts, a record each; else none.
+static std::vector<BezierPiece> pieces_of(const ClassInfo& info, const ObjectDescription& object,
+                                          const std::string& place) {
+    for (const Parameter& p : info.parameters) {
+        if (p.member.type != "BezierPiece" || !object.parameters.contains(p.member.name)) continue;
+        const std::string at = place + "/" + p.member.name;
+        return cut_bezier_patches(read_bezier_patches(object.parameters[p.member.name], at), at);
+    }
+    return {};
+}
+
 void SceneCompiler::add_geometry() {
     std::vector<Added> shapes;
+    std::vector<ShapePart> parts;
     for (const PlacedObject& shape : in_.shapes) {
-        shapes.push_back(add_record(Interface::geometry, shape.object));
+        const auto index = uint32_t(&shape - in_.shapes.data());
+        const std::vector<BezierPiece> pieces =
+            pieces_of(use_class(Interface::geometry, shape.object), shape.object,
+                      message_place(in_, shape.object.where));
+        for (size_t i = 0; i < std::max<size_t>(pieces.size(), 1); ++i) {
+            resolver_.piece = pieces.empty() ? nullptr : &pieces[i];
+            shapes.push_back(add_record(Interface::geometry, shape.object));
+            parts.push_back({index});
+        }
+        resolver_.piece = nullptr;
         if (shape.object.class_name == "disk" || shape.object.class_name == "asphere")
             check_hole(shape.object, message_place(in_, shape.object.where));
         if (shapes.back().info->never_emits && in_.materials[shape.material].emission)
@@ -38,8 +59,9 @@ void SceneCompiler::add_geometry() {
     }
     upload_microstructures();
     const auto refs = references(Interface::geometry, shapes);
-    const std::vector<Box> bounds = shape_bounds(refs);
-    const uint64_t key = world_key(bounds);
+    for (size_t i = 0; i < parts.size(); ++i) parts[i].ref = refs[i];
+    find_bounds(parts);
+    const uint64_t key = world_key(parts);
     World& world = memory_.world;
     if (key != memory_.world_key) {
         memory_.world_key = 0;
@@ -47,7 +69,7 @@ void SceneCompiler::add_geometry() {
             memory_.buffers.erase(name);
         memory_.world_features = {};
         memory_.light_positions.clear();
-        world = build_world(in_, bounds, refs, threads_, memory_.world_features);
+        world = build_world(in_, parts, threads_, memory_.world_features);
         memory_.unrolled_traversal.clear();
         if (in_.elements.empty() && !has_bodies() && !memory_.world_features.twins &&
             !options_.varying.count("places") && device_.description.compiles_choices)
@@ -80,13 +102,13 @@ void SceneCompiler::add_geometry() {
 }
 
 // Of all that the world depends on but the meshes themselves.
-uint64_t SceneCompiler::world_key(const std::vector<Box>& shape_bounds) const {
+uint64_t SceneCompiler::world_key(const std::vector<ShapePart>& parts) const {
     uint64_t key = hash_text(has_bodies() ? "bodies" : options_.varying.count("places") ? "places" : "");
     const auto add = [&](const auto& value) {
         key = hash_text({reinterpret_cast<const char*>(&value), sizeof value}, key);
     };
     for (const std::byte b : records_.at(Interface::geometry).bytes()) add(b);
-    for (const Box& box : shape_bounds) add(box);
+    for (const ShapePart& part : parts) add(part);
     for (const PlacedObject& shape : in_.shapes) {
         key = hash_text(shape.object.class_name, key);
         add(shape.world_from_local);
@@ -111,8 +133,10 @@ uint64_t SceneCompiler::world_key(const std::vector<Box>& shape_bounds) const {
 }
 
 // The classes themselves say how large their objects are: on the device, so that a class needs no host code.
-std::vector<Box> SceneCompiler::shape_bounds(const std::vector<uint32_t>& refs) {
-    if (refs.empty()) return {};
+void SceneCompiler::find_bounds(std::vector<ShapePart>& parts) {
+    if (parts.empty()) return;
+    std::vector<uint32_t> refs;
+    for (const ShapePart& part : parts) refs.push_back(part.ref);
     write_headers();
     upload("GeometryRecords", records_[Interface::geometry].bytes());
     const Buffer in = create_buffer(device_, refs, "ShapeRefs");
@@ -120,17 +144,15 @@ std::vector<Box> SceneCompiler::shape_bounds(const std::vector<uint32_t>& refs) 
     run_once("kernels/bound_shapes.comp", uint32_t(refs.size()), {{"ShapeRefs", &in}, {"ShapeBounds", &out}},
              {{"count", uint32_t(refs.size())}});
     const auto corners = out.read_array<glm::vec3>(2 * refs.size());
-    std::vector<Box> boxes;
     for (size_t i = 0; i < refs.size(); ++i) {
-        boxes.push_back({corners[2 * i], corners[2 * i + 1]});
-        const glm::vec3 size = boxes.back().hi - boxes.back().lo;
+        parts[i].bounds = {corners[2 * i], corners[2 * i + 1]};
+        const glm::vec3 size = parts[i].bounds.hi - parts[i].bounds.lo;
         if (!glm::all(glm::lessThan(size, glm::vec3(1e29f)))) {
-            const ObjectDescription& object = in_.shapes[i].object;
+            const ObjectDescription& object = in_.shapes[parts[i].shape].object;
             fail_input("{}: no {} has these parameters together; see: etendue classes {}",
                        message_place(in_, object.where), object.class_name, object.class_name);
         }
     }
-    return boxes;
 }
 
 void SceneCompiler::upload_world() {

@@ -118,10 +118,86 @@ struct AsphereOracle {
     double distance(glm::dvec3 p) const { return height(p) * shape.normal(p).z; }
 };
 
+// Of the class `bezier_patch`: the graph of z = sum of c[j][i] (x / X)^i (y / Y)^j over |x| < X, |y| < Y.
+struct GraphOracle {
+    double c[4][4], half_x, half_y;
+
+    double height(double x, double y) const {
+        double z = 0;
+        for (int j = 3; j >= 0; --j) {
+            double row = 0;
+            for (int i = 3; i >= 0; --i) row = row * (x / half_x) + c[j][i];
+            z = z * (y / half_y) + row;
+        }
+        return z;
+    }
+    // Bernstein's coefficients of (2 u - 1)^i, u from 0 to 1.
+    nlohmann::json control_points() const {
+        const double power[4][4] = {
+            {1, 1, 1, 1}, {-1, -1 / 3.0, 1 / 3.0, 1}, {1, -1 / 3.0, -1 / 3.0, 1}, {-1, 1, -1, 1}};
+        nlohmann::json points = nlohmann::json::array();
+        for (int l = 0; l < 4; ++l)
+            for (int k = 0; k < 4; ++k) {
+                double z = 0;
+                for (int j = 0; j < 4; ++j)
+                    for (int i = 0; i < 4; ++i) z += c[j][i] * power[i][k] * power[j][l];
+                points.push_back({half_x * power[1][k], half_y * power[1][l], z});
+            }
+        return points;
+    }
+    glm::dvec3 normal(const glm::dvec3& p) const {
+        const double h = 1e-6;
+        return glm::normalize(glm::dvec3(-(height(p.x + h, p.y) - height(p.x - h, p.y)) / (2 * h),
+                                         -(height(p.x, p.y + h) - height(p.x, p.y - h)) / (2 * h), 1));
+    }
+    double distance(const glm::dvec3& p) const { return (p.z - height(p.x, p.y)) * normal(p).z; }
+    std::vector<double> crossings(const glm::dvec3& o, const glm::dvec3& d) const {
+        double low = -1e30, high = 1e30;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double half = axis == 0 ? half_x : axis == 1 ? half_y : 3;
+            if (d[axis] == 0 && std::abs(o[axis]) > half) return {};
+            if (d[axis] == 0) continue;
+            const double a = (-half - o[axis]) / d[axis], b = (half - o[axis]) / d[axis];
+            low = std::max(low, std::min(a, b)), high = std::min(high, std::max(a, b));
+        }
+        const auto at = [&](double t) { return (o + t * d).z - height((o + t * d).x, (o + t * d).y); };
+        std::vector<double> found;
+        const auto solve = [&](double l, double r) {
+            const double side = at(l);
+            for (int k = 0; k < 50; ++k) (side * at(0.5 * (l + r)) > 0 ? l : r) = 0.5 * (l + r);
+            found.push_back(0.5 * (l + r));
+        };
+        constexpr int steps = 48;
+        double a = low, at_a = low < high ? at(low) : 0;
+        for (int i = 1; i <= steps && low < high; ++i) {
+            const double b = low + (high - low) * i / steps, at_b = at(b);
+            if (at_a * at_b <= 0) {
+                solve(a, b);
+            } else if (std::min(std::abs(at_a), std::abs(at_b)) < 3 * (b - a) * glm::length(d)) {
+                double l = a, r = b;  // a pair within a step: about where the height is least, by thirds
+                for (int k = 0; k < 40; ++k) {
+                    const double m = l + (r - l) / 3, n = r - (r - l) / 3, at_m = at(m), at_n = at(n);
+                    if (std::min(at_m * at_a, at_n * at_a) <= 0) {
+                        const double middle = at_m * at_a <= 0 ? m : n;
+                        solve(a, middle), solve(middle, b);
+                        break;
+                    }
+                    (std::abs(at_m) < std::abs(at_n) ? r : l) = std::abs(at_m) < std::abs(at_n) ? n : m;
+                }
+            }
+            a = b, at_a = at_b;
+        }
+        return found;
+    }
+};
+
 inline const std::map<std::string, Oracle>& oracles() {
     using V = glm::dvec3;
     using Ts = std::vector<double>;
     static const AsphereOracle asphere{{-0.25, -0.5, {0, -0.1, 0, -0.3}}, double(0.8f)};
+    // One piece, which bulges towards +z.
+    static const GraphOracle patch{
+        {{0, 0, -0.06, -0.01}, {0, -0.02, 0, 0}, {-0.055, 0, 0, 0}, {0.005, 0, 0, 0}}, 0.75, 0.65};
     static const std::map<std::string, Oracle> table{
         {"triangle",
          {{},
@@ -213,6 +289,11 @@ inline const std::map<std::string, Oracle>& oracles() {
           },
           [](V p) { return asphere.distance(p); },
           {{-0.8f, -0.8f, float(asphere.shape.sag(0.8, 0))}, {0.8f, 0.8f, 0}}}},
+        {"bezier_patch",
+         {{{"control_points", patch.control_points()}},
+          [](V o, V d) { return patch.crossings(o, d); },
+          [](V p) { return patch.distance(p); },
+          {{-0.75f, -0.65f, -0.15f}, {0.75f, 0.65f, 0.01f}}}},
     };
     return table;
 }

@@ -115,11 +115,19 @@ void GeometryProbe::add_shape(const std::string& class_name, const nlohmann::jso
                               const Box& local, const glm::dmat4& world_from_local) {
     const ClassInfo* info = registry_.find(Interface::geometry, class_name);
     REQUIRE(info);
-    const RecordResolver resolver = micro_.resolver(scene_);
-    scene_.shapes.push_back({class_name, {class_name, parameters, "/geometry"}, world_from_local, 0});
-    place(world_from_local, PrimitiveKind::shape, local);
-    shapes_.back() = {info, records_.count(*info)};
-    records_.add(*info, fill_record(*info, {class_name, parameters, "/geometry"}, {}, resolver));
+    RecordResolver resolver = micro_.resolver(scene_);
+    std::vector<BezierPiece> pieces;
+    if (class_name == "bezier_patch")
+        pieces =
+            cut_bezier_patches(read_bezier_patches(parameters["control_points"], "/geometry"), "/geometry");
+    for (size_t i = 0; i < std::max<size_t>(pieces.size(), 1); ++i) {
+        if (!pieces.empty()) resolver.piece = &pieces[i];
+        scene_.shapes.push_back({class_name, {class_name, parameters, "/geometry"}, world_from_local, 0});
+        place(world_from_local, PrimitiveKind::shape,
+              pieces.empty() ? local : Box{pieces[i].lo, pieces[i].hi});
+        shapes_.back() = {info, records_.count(*info)};
+        records_.add(*info, fill_record(*info, {class_name, parameters, "/geometry"}, {}, resolver));
+    }
 }
 
 uint32_t GeometryProbe::add_cell(const std::vector<glm::vec3>& corners) {

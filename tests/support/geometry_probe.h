@@ -39,7 +39,7 @@ class GeometryProbe {
   public:
     GeometryProbe();
     void add_triangle(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
-    // `parameters` of the class as a scene gives them, `local` its box.
+    // `parameters` of the class as a scene gives them, `local` its box. A patch is cut into its pieces.
     void add_shape(const std::string& class_name, const nlohmann::json& parameters, const Box& local,
                    const glm::dmat4& world_from_local);
     uint32_t add_cell(const std::vector<glm::vec3>& corners);      // for the parameter of that name
