@@ -93,6 +93,7 @@ std::string type_name(const Parameter& p) {
         {"GratingOrders", "list"},
         {"MicroPlaces", "file"},
         {"CellMesh", "index"},
+        {"GratingTable", "list, or file"},
         {"BezierPiece", "list"},
         {"PhotometryRef", "file"},
         {"RayFileRef", "file"},

@@ -1,7 +1,6 @@
 // Optical elements: nodes that hold another scene of the file, as a black box.
 #include <algorithm>
 #include <map>
-#include <tuple>
 
 #include "host/geometry/turn.h"
 #include "host/gltf/import.h"
@@ -10,54 +9,6 @@ namespace etendue {
 namespace {
 
 constexpr size_t max_elements = size_t(1) << 20;
-
-// Edges of a closed surface that faces one way are each gone along once in either direction.
-void check_closed(const JsonAt& at, const GltfImport& import, const std::vector<MeshInstance>& boundary) {
-    using Corner = std::tuple<float, float, float>;
-    std::map<std::pair<Corner, Corner>, int> edges;
-    double volume = 0;
-    for (const MeshInstance& instance : boundary) {
-        const MeshDescription& mesh = import.scene.meshes[instance.mesh];
-        for (const glm::uvec3& t : mesh.triangles) {
-            glm::dvec3 p[3];
-            Corner corners[3];
-            for (int i = 0; i < 3; ++i) {
-                const glm::vec3 v = mesh.positions[t[i]] + 0.0f;  // -0 is 0
-                p[i] = v, corners[i] = {v.x, v.y, v.z};
-            }
-            volume += glm::dot(p[0], glm::cross(p[1], p[2]));
-            for (int i = 0; i < 3; ++i) {
-                const Corner &a = corners[i], &b = corners[(i + 1) % 3];
-                a < b ? ++edges[{a, b}] : --edges[{b, a}];
-            }
-        }
-    }
-    for (const auto& [edge, balance] : edges)
-        if (balance != 0)
-            fail_at(at,
-                    "is not closed: there is a hole, or a triangle turned round, at ({:g}, {:g}, {:g}); "
-                    "allowed: a closed mesh",
-                    std::get<0>(edge.first), std::get<1>(edge.first), std::get<2>(edge.first));
-    if (!(volume > 0)) fail_at(at, "faces inward; allowed: a closed mesh that faces outward");
-}
-
-std::vector<MeshInstance> read_boundary(GltfImport& import, const JsonAt& element) {
-    const std::optional<JsonAt> at = find(element, "boundary");
-    if (!at) return {};
-    if ((*at)->is_string()) {
-        if (text_value(*at) != "box")
-            fail_at(*at, "is '{}'; allowed: \"box\", or the index of a mesh", text_value(*at));
-        return {};
-    }
-    const uint32_t mesh = index_value(*at, array_size(import.root, "meshes"), "/meshes");
-    const MeshRange range = read_mesh(import, mesh, {});
-    std::vector<MeshInstance> boundary;
-    for (uint32_t i = range.first; i < range.first + range.count; ++i)
-        boundary.push_back({i, import.content_root, element.pointer, import.scene.meshes[i].name, 0});
-    if (boundary.empty()) fail_at(*at, "has no triangles; allowed: a closed mesh");
-    check_closed(*at, import, boundary);
-    return boundary;
-}
 
 void check_holds_not_itself(const GltfImport& import, uint32_t element, uint32_t root_scene) {
     const std::optional<uint32_t> scene = import.elements[element].scene;
@@ -68,6 +19,11 @@ void check_holds_not_itself(const GltfImport& import, uint32_t element, uint32_t
                     "scene {} holds itself; allowed: another scene", *scene);
         if (i == 0) return;
     }
+}
+
+// A class whose contents are made of its parameters.
+bool is_placed(const std::string& name) {
+    return name == "microstructure" || name == "lens_system" || name == "grating";
 }
 
 // What an element holds, as a new content.
@@ -82,8 +38,10 @@ void place_content(GltfImport& import, uint32_t element) {
     if (const auto held = import.elements[element].scene) {
         scene.contents.back().boundary = read_boundary(import, at);
         place_nodes(import, *held);
-    } else if (text_value(member(at, "class")) == "microstructure") {
+    } else if (const std::string& name = text_value(member(at, "class")); name == "microstructure") {
         place_microstructure(import, at);
+    } else if (name == "grating") {
+        place_grating(import, at);
     } else {
         place_lens_system(import, at);
     }
@@ -114,8 +72,9 @@ void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
     const bool holds_scene = text_value(class_at) == "subscene";
     if (holds_scene)
         only_members(at, {"class", "scene", "boundary"});
-    else if (text_value(class_at) != "microstructure" && text_value(class_at) != "lens_system")
-        fail_at(class_at, "there is no element class '{}'; allowed: subscene, microstructure, lens_system",
+    else if (!is_placed(text_value(class_at)))
+        fail_at(class_at,
+                "there is no element class '{}'; allowed: subscene, microstructure, lens_system, grating",
                 text_value(class_at));
     if (import.scene.elements.size() == max_elements)
         fail_at(at, "the scene has more than {} elements", max_elements);

@@ -174,6 +174,8 @@ void load_materials(GltfImport& import);
 // As glTF names the alpha modes, for class `principled`.
 int alpha_mode(const JsonAt& material);
 uint32_t default_material(GltfImport& import);
+// Fails unless a grating has orders, or a table of efficiencies.
+void check_grating_form(const JsonAt& at, const ObjectDescription& surface);
 // A dielectric takes its refractive indices from the media on its sides. One without media named gets one
 // inside, from the "ior" of its parameters, which lose it.
 void take_medium_from_ior(GltfImport& import, MaterialDescription& material, const JsonAt& at,
@@ -227,6 +229,16 @@ void skin(GltfImport& import, const JsonAt& attributes, size_t vertex_count, Ver
 void read_element(GltfImport& import, const JsonAt& at, const std::string& name,
                   const glm::dmat4& parent_from_local);
 void load_elements(GltfImport& import, uint32_t root_scene);  // what they hold
+
+// element_boundaries.cpp
+// The closed meshes that an element of class subscene names; none = a box around all that it holds.
+std::vector<MeshInstance> read_boundary(GltfImport& import, const JsonAt& element);
+// The boundary of the content that is being placed: a box around the node's z axis.
+void bound_by_box(GltfImport& import, const JsonAt& at, const std::vector<double>& size, double low,
+                  double high);
+
+// grating_elements.cpp: an element of that class, a plate in the middle of a box.
+void place_grating(GltfImport& import, const JsonAt& at);
 
 // lens_elements.cpp: the surfaces, housing and media of an element of class lens_system, placed in its frame.
 void place_lens_system(GltfImport& import, const JsonAt& at);

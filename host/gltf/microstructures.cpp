@@ -111,7 +111,8 @@ void place_microstructure(GltfImport& import, const JsonAt& at) {
     else if (density)
         parameters["density"] = **density;
     if (const auto bend = find(at, "bend"))
-        fail_at(*bend, "is not for a sheet in a box; allowed: in a geometry of a scene that an element holds");
+        fail_at(*bend,
+                "is not for a sheet in a box; allowed: in a geometry of a scene that an element holds");
     const double scale = number(at, "scale", 1, 1e-9, 1e9);
     const std::vector<double> size = number_array(member(at, "size"), 2, 0, max_coordinate);
     name_parts(import, at, parameters);
@@ -134,22 +135,9 @@ void place_microstructure(GltfImport& import, const JsonAt& at) {
     const double depth = high - low;
     const double thickness = number(at, "thickness", 1.01 * depth, depth, max_coordinate),
                  beyond = 0.01 * depth;
-    const glm::vec3 half(0.5 * size[0], 0.5 * size[1], 0);
     const bool is_dent = high == 0;
-    const float lo = float(is_dent ? -thickness : low - beyond),
-                hi = float(is_dent ? beyond : std::max(low + thickness, high));
-    MeshDescription box;
-    box.name = "boundary", box.where = at.pointer;
-    for (int i = 0; i < 8; ++i)
-        box.positions.push_back({i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? hi : lo});
-    box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    import.scene.contents.back().boundary = {
-        { uint32_t(import.scene.meshes.size()),
-          import.content_root,
-          at.pointer }};
-    import.mesh_bounds.push_back({glm::dvec3(-half.x, -half.y, lo), glm::dvec3(half.x, half.y, hi)});
-    import.scene.meshes.push_back(std::move(box));
+    bound_by_box(import, at, size, is_dent ? -thickness : low - beyond,
+                 is_dent ? beyond : std::max(low + thickness, high));
 }
 
 }  // namespace etendue

@@ -181,6 +181,13 @@ void choose_mueller_form(const JsonAt& at, ObjectDescription& surface) {
     if (has_file) surface.class_name = "mueller_table";
 }
 
+void check_grating_form(const JsonAt& at, const ObjectDescription& surface) {
+    const bool has_table = surface.parameters.contains("efficiencies");
+    if (has_table == surface.parameters.contains("orders"))
+        fail_at(at, "has {} orders {} efficiencies; allowed: one of them", has_table ? "both" : "neither",
+                has_table ? "and" : "nor");
+}
+
 void read_material_optics(GltfImport& import, const JsonAt& optics, MaterialDescription& material) {
     only_members(optics, {"surface", "inside", "outside", "priority", "emission"});
     material.inside = text(optics, "inside");
@@ -192,6 +199,7 @@ void read_material_optics(GltfImport& import, const JsonAt& optics, MaterialDesc
         if (std::optional<JsonAt> base = is_film ? find_object(*surface, "base") : std::nullopt)
             put_film_on_base(import, *base, material);
         if (material.surface.class_name == "mueller") choose_mueller_form(*surface, material.surface);
+        if (material.surface.class_name == "grating") check_grating_form(*surface, material.surface);
     }
     if (std::optional<JsonAt> priority = find(optics, "priority"))
         material.priority = uint32_t(integer_value(*priority, 1));

@@ -165,7 +165,9 @@ void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value
             fail_input("{}: allowed: the index of a scene, in a scene file", place);
         store(record, at, value.is_null() ? CellMesh{} : resolver.cell(uint32_t(number)));
     } else if (type == "GratingOrders") {
-        store(record, at, resolver.grating(value, where));
+        store(record, at, value.is_null() ? GratingOrders{} : resolver.grating(value, where));
+    } else if (type == "GratingTable") {
+        store(record, at, value.is_null() ? GratingTable{} : resolver.grating_table(value, where));
     } else {
         fail_input("{}: the class's member {} has type {}, which no parameter can fill", place, p.member.name,
                    type);
@@ -257,6 +259,16 @@ void add_measured_kinds(const std::vector<std::byte>& records, uint32_t stride, 
     constants.macros += fmt::format("#define MEASURED_SLICES {}\n", anisotropic ? 4 : 2);
 }
 
+void add_absence_of_tables(const std::vector<std::byte>& records, uint32_t stride, const MemberLayout& member,
+                           ClassConstants& constants) {
+    for (size_t at = 0; at < records.size(); at += stride) {
+        GratingTable table;
+        std::memcpy(&table, &records[at + member.offset], sizeof(table));
+        if (table.first != no_record) return;
+    }
+    constants.statements += fmt::format("r.{}.first = NO_RECORD; ", member.name);
+}
+
 }  // namespace
 
 // Its first number, of each record.
@@ -281,6 +293,7 @@ ClassConstants RecordBuffer::constant_members(const ClassInfo& info,
         if (type == "CellMesh" &&
             std::ranges::none_of(first_numbers(records, info.stride, p.member), std::identity{}))
             constants.statements += fmt::format("r.{}.nodes = 0u; ", name);
+        if (type == "GratingTable") add_absence_of_tables(records, info.stride, p.member, constants);
         const int length = vector_length(type);
         if (!p.from_scene || (p.member.size != 4 && !length)) continue;
         if (varying.count(member_path(info, name))) continue;

@@ -43,6 +43,14 @@ struct GratingOrders {
     uint32_t first = 0, count = 0;  // rows (host/scene/grating_orders.h)
 };
 
+// Twin of struct GratingTable there.
+struct GratingTable {
+    uint32_t first = 0xFFFFFFFFu;  // number (host/scene/grating_table.h); none
+    uint32_t wavelengths = 0, sines = 0;
+    uint32_t polarizes = 0, transmits = 0;
+    GratingOrders orders = {};
+};
+
 // What typed members of a record refer to.
 struct RecordResolver {
     const SceneDescription& scene;
@@ -74,6 +82,8 @@ struct RecordResolver {
         };
     // Of SceneDescription::cells.
     std::function<CellMesh(uint32_t cell)> cell = [](uint32_t) { return CellMesh{}; };
+    std::function<GratingTable(const nlohmann::json& value, const std::string& where)> grating_table =
+        [](const nlohmann::json&, const std::string&) { return GratingTable{}; };
     // Of a patch: the piece that the record is of; null = the only one.
     const BezierPiece* piece = nullptr;
     std::function<PhotometryRef(const std::filesystem::path& file)> photometry =

@@ -47,6 +47,9 @@ SceneCompiler::SceneCompiler(Device& device, const SceneDescription& description
         return add_places(file, info, record);
     };
     resolver_.cell = [this](uint32_t cell) { return add_cell(cell); };
+    resolver_.grating_table = [this](const nlohmann::json& value, const std::string& where) {
+        return append(grating_orders_, grating_numbers_, read_grating_table(value, in_, where));
+    };
     resolver_.own_shape = [this](const std::string& where) { return own_shape(where); };
     resolver_.photometry = [this](const std::filesystem::path& file) { return add_photometry(file); };
     resolver_.watched = [this](const std::string& mesh, const std::string& where) {

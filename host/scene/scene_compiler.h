@@ -4,7 +4,7 @@
 #pragma once
 #include "host/lights/emission_map.h"
 #include "host/lights/light_tree.h"
-#include "host/scene/grating_orders.h"
+#include "host/scene/grating_table.h"
 #include "host/scene/scene.h"
 #include "host/scene/scene_memory.h"
 
@@ -159,6 +159,7 @@ class SceneCompiler {
     bool uses_measured_ = false, has_sky_ = false;
     std::vector<MuellerTable> mueller_tables_;
     std::vector<GratingOrder> grating_orders_;
+    std::vector<float> grating_numbers_;
     SpectralValue surrounding_;  // index of the medium whose phase function is being added
     std::vector<std::shared_ptr<const MieTable>> mie_tables_;
     std::vector<uint32_t> watched_words_;  // of meters on surfaces

@@ -146,7 +146,10 @@ void SceneCompiler::upload_measured() {
         share("MeasuredPoints", memory_.measured.points);
         share("MeasuredColors", memory_.measured.colors);
     }
-    if (!grating_orders_.empty()) upload("GratingOrderRows", grating_orders_);
+    if (!grating_orders_.empty()) {
+        upload("GratingOrderRows", grating_orders_);
+        upload("GratingNumbers", grating_numbers_);
+    }
     if (!mueller_tables_.empty()) {
         upload("MuellerTables", mueller_tables_);
         share("MuellerNumbers", memory_.mueller_tables.numbers);

@@ -6,6 +6,7 @@
 
 #include "host/gltf/splines.h"
 #include "tests/contracts/geometry_classes.h"
+#include "tests/support/nurbs_shapes.h"
 
 using namespace etendue;
 using glm::dvec3;
@@ -15,39 +16,12 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// A quarter turn a span: points and weights of an arc, quadratic.
-struct Arc {
-    std::vector<glm::dvec2> points;
-    std::vector<double> weights, knots;
-
-    Arc(int quarters, double start) {
-        for (int i = 0; i <= 2 * quarters; ++i) {
-            const double angle = start + i * pi / 4, reach = i % 2 ? std::sqrt(2.0) : 1;
-            points.emplace_back(reach * std::cos(angle), reach * std::sin(angle));
-            weights.push_back(i % 2 ? std::sqrt(0.5) : 1);
-        }
-        knots = {0, 0, 0};
-        for (int i = 1; i < quarters; ++i) knots.insert(knots.end(), {double(i), double(i)});
-        knots.insert(knots.end(), 3, double(quarters));
-    }
-};
-
-// An arc (distance from the z axis, height) turned around z: facing outward where the arc runs upward.
-json revolution(const Arc& arc, double away) {
-    const Arc turn(4, 0);
-    json spline = {{"degree", {2, 2}}, {"knots", {turn.knots, arc.knots}}};
-    for (size_t j = 0; j < arc.points.size(); ++j)
-        for (size_t i = 0; i < turn.points.size(); ++i) {
-            const double reach = arc.points[j].x + away;
-            spline["control_points"].push_back(
-                {reach * turn.points[i].x, reach * turn.points[i].y, arc.points[j].y});
-            spline["weights"].push_back(turn.weights[i] * arc.weights[j]);
-        }
+json patches(const json& spline) {
     const std::string file = "spline";
     return {{"control_points", patches_of_spline({&spline, "", &file})}};
 }
-json sphere() { return revolution(Arc(2, -pi / 2), 0); }
-json torus() { return revolution(Arc(4, -pi), 2.5); }  // of tube radius 1
+json sphere() { return patches(nurbs_sphere(1)); }
+json torus() { return patches(nurbs_torus(2.5, 1)); }
 
 double torus_distance(const dvec3& p) { return std::hypot(std::hypot(p.x, p.y) - 2.5, p.z) - 1; }
 
@@ -220,6 +194,24 @@ TEST_CASE("of several points on a ray the first is met, on waves of one patch") 
     }
     CHECK(several > 10000);
     CHECK(wrong == 0);
+}
+
+TEST_CASE("the host's record of a piece is laid out as the shader's") {
+    ClassRegistry classes(test_sources());
+    const ClassInfo* info = classes.find(Interface::geometry, "bezier_patch");
+    REQUIRE(info);
+    CHECK(info->parameters.front().member.size == sizeof(BezierPiece));
+    std::map<std::string, uint32_t> offsets;
+    for (const MemberLayout& m : info->parameters.front().member.members) offsets[m.name] = m.offset;
+    CHECK(offsets.at("row1") == offsetof(BezierPiece, rows) + sizeof(glm::mat4));
+    CHECK(offsets.at("area_density") == offsetof(BezierPiece, area_density));
+    CHECK(offsets.at("origin") == offsetof(BezierPiece, origin));
+    CHECK(offsets.at("radius") == offsetof(BezierPiece, radius));
+    CHECK(offsets.at("hi") == offsetof(BezierPiece, hi));
+    CHECK(offsets.at("axis") == offsetof(BezierPiece, axis));
+    CHECK(offsets.at("second") == offsetof(BezierPiece, second));
+    CHECK(offsets.at("slack") == offsetof(BezierPiece, slack));
+    CHECK(offsets.at("domain") == offsetof(BezierPiece, domain));
 }
 
 TEST_CASE("what a patch may be is said") {

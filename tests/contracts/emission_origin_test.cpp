@@ -3,12 +3,16 @@
 #include <cmath>
 
 #include "host/lens/surface_shape.h"
+#include "tests/contracts/geometry_classes.h"
 #include "tests/support/emission_probe.h"
 
 using namespace etendue;
 using nlohmann::json;
 
 namespace {
+
+// Of one piece.
+const GraphOracle bulge{{{0, 0, -0.05, -0.01}, {0, -0.02, 0, 0}, {-0.04, 0, 0, 0}, {0, 0, 0, 0}}, 0.7, 0.5};
 
 // Signed distance from the surface in the shape's own frame, and its gradient there.
 double local_distance(const std::string& name, const glm::dvec3& p, double radius, glm::dvec3& gradient) {
@@ -20,6 +24,10 @@ double local_distance(const std::string& name, const glm::dvec3& p, double radiu
         const SurfaceShape shape{-1, 0.5, {0, -0.2}};
         gradient = shape.normal({p.x, p.y, shape.sag(p.x, p.y)});
         return (p.z - shape.sag(p.x, p.y)) * gradient.z;
+    }
+    if (name == "bezier_patch") {
+        gradient = bulge.normal(p);
+        return bulge.distance(p);
     }
     if (name == "cylinder") {
         gradient = glm::normalize(glm::dvec3(p.x, p.y, 0));
@@ -34,7 +42,8 @@ const std::pair<std::string, json> shapes[] = {
     {"disk", {{"radius", 0.7}}},
     {"rectangle", {{"size", {0.9, 0.3}}}},
     {"cylinder", {{"radius", 0.7}, {"height", 0.4}}},
-    {"asphere", {{"curvature", -1}, {"conic", 0.5}, {"coefficients", {-0.2}}, {"aperture", 0.7}}}};
+    {"asphere", {{"curvature", -1}, {"conic", 0.5}, {"coefficients", {-0.2}}, {"aperture", 0.7}}},
+    {"bezier_patch", {{"control_points", bulge.control_points()}}}};
 
 constexpr uint32_t shape_count = std::size(shapes), light_count = 4 * shape_count;
 

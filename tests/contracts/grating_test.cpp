@@ -5,10 +5,12 @@
 #include <numbers>
 
 #include "host/error.h"
-#include "host/scene/grating_orders.h"
+#include "host/scene/grating_table.h"
+#include "tests/contracts/surface_configurations.h"
 #include "tests/contracts/mueller_frames.h"
 #include "tests/support/source_path.h"
 #include "tests/support/surface_probe.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace etendue;
 using nlohmann::json;
@@ -239,6 +241,148 @@ TEST_CASE("a grating reflects light from below as was said of that, towards the 
             CHECK(o.part == doctest::Approx(zero ? 0.2 : up > 0 ? 0.5 : 0.1).epsilon(1e-5));
         }
     }
+}
+
+// Without wavelengths lanes have those of 611, 549 and 464 nm.
+TEST_CASE("a table gives what stands in its rows, and between them what is linear in the sine") {
+    ClassRegistry classes = registry();
+    const json rows = grating_table();
+    SurfaceProbe probe(classes, "grating",
+                       {{{"period", line / 0.3}, {"axis", -90 * degree}, {"efficiencies", rows}}});
+    const auto told = [&](int order, const char* side, const char* kind, double angle) {
+        double sum = 0;  // of s and p, at 611 nm
+        for (const json& row : rows)
+            if (row["order"] == order && row["side"] == side && std::abs(double(row["angle"]) - angle) < 1e-9)
+                sum += double(row[kind][2]);
+        return 0.5 * sum;
+    };
+    size_t found = 0;
+    for (const bool above : {true, false})
+        for (const double angle : {-0.4, 0.1, 0.35}) {
+            const char* const side = above ? "above" : "below";
+            // Light travels towards +x where the angle is above 0.
+            const glm::vec3 from(-std::sin(angle), 0, (above ? 1 : -1) * std::cos(angle));
+            for (const Order& o : orders_of(probe, 0, {1, 1, true}, from)) {
+                const int m = int(std::lround((o.wi.x - std::sin(angle)) / 0.3));
+                const char* const kind = o.reflected ? "reflected" : "transmitted";
+                double expected = told(m, side, kind, angle);
+                if (angle == 0.35) {
+                    const double part = (std::sin(angle) - std::sin(0.1)) / (std::sin(0.6) - std::sin(0.1));
+                    expected = (1 - part) * told(m, side, kind, 0.1) + part * told(m, side, kind, 0.6);
+                }
+                CHECK(o.part == doctest::Approx(expected).epsilon(2e-5));
+                ++found;
+            }
+        }
+    CHECK(found == 2 * 3 * 6);
+}
+
+TEST_CASE("a table is of the light, whichever way a path goes") {
+    ClassRegistry classes = registry();
+    SurfaceProbe probe(classes, "grating",
+                       {{{"period", line / 0.3}, {"axis", 0.4}, {"efficiencies", grating_table()}}});
+    size_t pairs = 0;
+    for (int k = 0; k < 12; ++k) {
+        const glm::vec3 wo(
+            glm::normalize(glm::dvec3(std::sin(k * 2.3), std::cos(k * 3.1), 1.2 * std::sin(k * 1.7 + 0.4))));
+        for (const Order& o : orders_of(probe, 0, {1, 1.5f, false}, wo)) {
+            if (std::abs(o.wi.z) < 0.05 || std::abs(wo.z) < 0.05) continue;
+            const double n_o = wo.z > 0 ? 1 : 1.5, n_i = o.wi.z > 0 ? 1 : 1.5;
+            double power = 0;
+            for (const Order& light : orders_of(probe, 0, {1, 1.5f, true}, o.wi))
+                if (glm::distance(light.wi, wo) < 1e-4f) power = light.part;
+            CHECK(o.part == doctest::Approx(power * n_o * n_o / (n_i * n_i)).epsilon(2e-4));
+            ++pairs;
+        }
+    }
+    CHECK(pairs > 30);
+}
+
+// Reciprocity: order m carries as much of light that comes along one of its two directions as along the
+// other.
+TEST_CASE("a table of what is the same both ways, is so") {
+    json rows = json::array();
+    const double shift = 0.3;
+    for (int order = -1; order <= 1; ++order)
+        for (int i = -40; i <= 40; ++i) {
+            const double sine = i / 40.0;  // leaves at sine + order shift; back it comes at minus that
+            const double middle = sine + 0.5 * order * shift;
+            rows.push_back({{"order", order},
+                            {"angle", std::asin(sine)},
+                            {"reflected", 0.2 / (1 + middle * middle)},
+                            {"transmitted", 0.1 * std::exp(-2 * middle * middle)}});
+        }
+    ClassRegistry classes = registry();
+    SurfaceProbe probe(classes, "grating",
+                       {{{"period", line / shift}, {"axis", -90 * degree}, {"efficiencies", rows}}});
+    size_t pairs = 0;
+    for (const double angle : {-1.0, -0.3, 0.17, 0.8}) {
+        const glm::vec3 from(-std::sin(angle), 0, std::cos(angle));
+        for (const Order& o : orders_of(probe, 0, {1, 1, true}, from))
+            for (const Order& back : orders_of(probe, 0, {1, 1, true}, o.wi))
+                if (glm::distance(back.wi, from) < 1e-4f) {
+                    CHECK(back.part == doctest::Approx(o.part).epsilon(2e-3));
+                    ++pairs;
+                }
+    }
+    CHECK(pairs >= 16);
+}
+
+TEST_CASE("tables that make no sense are told in one line, and files by theirs") {
+    SceneDescription scene;
+    const auto message = [&](const json& table) -> std::string {
+        try {
+            read_grating_table(table, scene, "/efficiencies");
+        } catch (const Error& e) {
+            CHECK(e.code == ExitCode::bad_input);
+            return e.what();
+        }
+        return "";
+    };
+    const auto tells = [&](const json& table, const std::string& words) {
+        const std::string text = message(table);
+        CHECK_MESSAGE(text.find(words) != std::string::npos, text);
+        CHECK(text.find('\n') == std::string::npos);
+    };
+    const json s = {{"order", 1}, {"polarization", "s"}, {"wavelength", 550}, {"reflected", 0.5}};
+    json p = s, other = s;
+    p["polarization"] = "p", other["wavelength"] = 600;
+    CHECK(message({s, p}) == "");
+    tells(0.5, "/efficiencies: allowed: a list of rows");
+    tells(json::array(), "has no rows");
+    tells({s, s},
+          "/efficiencies/1: order 1, reflected from above at 550 nm and 0 rad, s, stands there twice");
+    tells(json::array({s}),
+          "order 1, reflected from above: nothing at 550 nm and 0 rad, p; allowed: values at all");
+    tells({s, p, other}, "order 1, reflected from above: nothing at 600 nm and 0 rad, p");
+    tells({{{"order", 1}, {"side", "left"}, {"reflected", 0.5}}},
+          "/0/side: is \"left\"; allowed: above, below");
+    tells({{{"order", 1}, {"reflected", 1.5}}}, "/0/reflected: allowed: numbers from 0 to 1");
+    tells({{{"order", 1}, {"angle", 2}, {"reflected", 0.5}}}, "/0/angle: allowed");
+    tells({{{"order", 1}}}, "/0: has no efficiency");
+    tells({{{"order", 1}, {"wavelength", {500, 600}}, {"reflected", 0.5}}}, "/0/reflected: allowed: as many");
+    tells({{{"order", 1}, {"reflected", 0.7}}, {{"order", 2}, {"transmitted", 0.4}}},
+          "orders carry 1.1 of the light from above at 550 nm and 0 rad, s, together; allowed: at most 1");
+
+    const TemporaryFolder folder;
+    scene.folder = folder.path;
+    write_text(folder / "orders.csv",
+               "# measured\norder, wavelength, polarization, transmitted\n1, 500, s, 0.25\n"
+               "1, 500, p, 0.5\n1, 600, s, 0.125\n1, 600, p, 0\n");
+    const GratingEfficiencies read = read_grating_table({{"file", "orders.csv"}}, scene, "/efficiencies");
+    CHECK(read.orders == std::vector<int>{0, 1});
+    CHECK(read.polarizes);
+    CHECK(read.transmits);
+    CHECK(read.wavelengths == 2);
+    CHECK(read.sines == 1);
+    // Wavelengths, sine, then order 0 of four blocks; of order 1 what is reflected from above.
+    CHECK(std::vector<float>(read.numbers.begin() + 3 + 5 * 4, read.numbers.begin() + 3 + 6 * 4) ==
+          std::vector<float>{0.25f, 0.5f, 0.125f, 0});
+    write_text(folder / "bad.csv", "order, transmitted\n1, 0.5\n2\n");
+    tells({{"file", "bad.csv"}}, "bad.csv: line 3: has 1 cells; allowed: 2");
+    write_text(folder / "bad.csv", "order, transmitted\n1, much\n");
+    tells({{"file", "bad.csv"}}, "bad.csv: line 2/transmitted: allowed: numbers from 0 to 1");
+    tells({{"file", "none.csv"}}, "none.csv: cannot be read");
 }
 
 TEST_CASE("orders that make no sense are told in one line") {

@@ -21,6 +21,26 @@ struct SurfaceConfiguration {
     bool is_reciprocal = true;  // tables need not be
 };
 
+// Of a grating: whatever comes, polarized and not the same both ways.
+inline nlohmann::json grating_table() {
+    nlohmann::json rows = nlohmann::json::array();
+    for (int order = -1; order <= 1; ++order)
+        for (const char* side : {"above", "below"})
+            for (const char* polarization : {"s", "p"})
+                for (int i = 0; i < 4; ++i) {
+                    const double turn = order + 3 * (side[0] == 'a') + 7 * (polarization[0] == 's') + 1.7 * i;
+                    const double part = 0.08 + 0.07 * std::sin(turn);
+                    rows.push_back({{"order", order},
+                                    {"side", side},
+                                    {"polarization", polarization},
+                                    {"angle", -0.9 + 0.5 * i},
+                                    {"wavelength", {464, 549, 611}},
+                                    {"reflected", {part, 0.5 * part, 0.9 * part}},
+                                    {"transmitted", {0.2 - part, 0.1, 1.1 * part}}});
+                }
+    return rows;
+}
+
 std::vector<SurfaceConfiguration> extended_principled();  // principled_extensions_test.cpp
 std::vector<SurfaceConfiguration> measured_files();       // measured_test.cpp
 std::vector<SurfaceConfiguration> mueller_files();        // mueller_table_test.cpp
@@ -197,7 +217,11 @@ inline std::vector<SurfaceConfiguration> surface_configurations(const std::strin
               {{"period", 1.3e-6}, {"orders", lossless}, {"evanescent", "absorbed"}},
               1.33f,
               1},
-            C{"blazed", {{"period", 2e-6}, {"axis", -1}, {"orders", blazed}}, 1, 1.5f}};
+            C{"blazed", {{"period", 2e-6}, {"axis", -1}, {"orders", blazed}}, 1, 1.5f},
+            C{.label = "tabulated",
+              .parameters = {{"period", 1.3e-6}, {"axis", 0.4}, {"efficiencies", grating_table()}},
+              .ior_below = 1.5f,
+              .is_reciprocal = false}};
     }
     if (name == "mueller_table") return mueller_files();
     if (name == "color_filter") return {C{"red", {{"transmittance", {0.9, 0.2, 0.05}}}}};

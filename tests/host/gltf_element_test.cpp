@@ -56,17 +56,44 @@ TEST_CASE("faults of elements are named") {
     const std::string at = "nowhere/scene.glb: /nodes/0/extensions/ETD_optics/element";
     const auto error = [](json element) { return import_error(with_element(std::move(element)).glb()); };
     CHECK(error({{"class", "lens"}, {"scene", 1}}) ==
-          at + "/class: there is no element class 'lens'; allowed: subscene, microstructure, lens_system");
+          at + "/class: there is no element class 'lens'; allowed: subscene, microstructure, lens_system, "
+               "grating");
     CHECK(error(subscene(7)) == at + "/scene: is 7; /scenes has elements 0 to 1");
     CHECK(error(subscene(0)) == at + "/scene: scene 0 holds itself; allowed: another scene");
     json sphere = subscene(1);
     sphere["boundary"] = "sphere";
-    CHECK(error(sphere) == at + "/boundary: is 'sphere'; allowed: \"box\", or the index of a mesh");
+    CHECK(error(sphere) ==
+          at + "/boundary: is 'sphere'; allowed: \"box\", the index of a mesh, or a sphere or cylinder");
+    sphere["boundary"] = {{"class", "torus"}, {"radius", 1}};
+    CHECK(error(sphere) == at + "/boundary/class: is 'torus'; allowed: sphere, cylinder");
     json open = subscene(1);
     open["boundary"] = 0;
     GltfBuilder b = with_element(open);
     b.triangle();
     CHECK(import_error(b.glb()).find("is not closed: there is a hole") != std::string::npos);
+}
+
+TEST_CASE("spheres and cylinders bound elements as closed meshes around them") {
+    for (const json& shape : {json{{"class", "sphere"}, {"radius", 2}},
+                              json{{"class", "cylinder"}, {"radius", 2}, {"height", 3}}}) {
+        json element = subscene(1);
+        element["boundary"] = shape;
+        const SceneDescription s = with_element(element).import();
+        const MeshDescription& mesh = s.meshes.at(s.contents.at(0).boundary.at(0).mesh);
+        double volume = 0, nearest = INFINITY;
+        std::map<std::pair<uint32_t, uint32_t>, int> edges;
+        for (const glm::uvec3& t : mesh.triangles) {
+            const glm::dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+            const glm::dvec3 n = glm::normalize(glm::cross(b - a, c - a));
+            volume += glm::dot(a, glm::cross(b, c)) / 6;
+            nearest = std::min(nearest, glm::dot(n, a));
+            for (int i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}], --edges[{t[(i + 1) % 3], t[i]}];
+        }
+        for (const auto& [edge, balance] : edges) CHECK(balance == 0);
+        const bool is_sphere = shape["class"] == "sphere";
+        CHECK(nearest >= (is_sphere ? 2 : 1.5) * (1 - 1e-6));
+        CHECK(volume == doctest::Approx(is_sphere ? 33.51 : 37.70).epsilon(0.03));
+    }
 }
 
 TEST_CASE("a scene that holds one that holds it is refused") {
@@ -75,6 +102,50 @@ TEST_CASE("a scene that holds one that holds it is refused") {
     CHECK(import_error(b.glb()).find("scene 1 holds itself") != std::string::npos);
     b.document["nodes"][1]["extensions"]["ETD_optics"] = {{"element", subscene(0)}};
     CHECK(import_error(b.glb()).find("scene 0 holds itself") != std::string::npos);
+}
+
+TEST_CASE("an element of grating is a rectangle in a box, with orders or with a table") {
+    const json listed = {{"class", "grating"},
+                         {"size", {0.02, 0.01}},
+                         {"period", 1e-6},
+                         {"orders", {-1, 0, 1}},
+                         {"efficiencies", {0.1, 0.3, 0.5}},
+                         {"reflects", true},
+                         {"evanescent", "absorbed"}};
+    const SceneDescription s = with_element(listed).import();
+    REQUIRE(s.shapes.size() == 1);
+    CHECK(s.shapes[0].content == 1);
+    CHECK(s.shapes[0].object.parameters["size"] == json({0.02, 0.01}));
+    const ObjectDescription& surface = s.materials.at(s.shapes[0].material).surface;
+    CHECK(surface.class_name == "grating");
+    CHECK(surface.parameters == json({{"period", 1e-6},
+                                      {"evanescent", "absorbed"},
+                                      {"orders",
+                                       {{{"order", -1}, {"reflected", 0.1}},
+                                        {{"order", 0}, {"reflected", 0.3}},
+                                        {{"order", 1}, {"reflected", 0.5}}}}}));
+    REQUIRE(s.contents.at(0).boundary.size() == 1);
+    float high = 0, wide = 0;
+    for (const glm::vec3& p : s.meshes.at(s.contents[0].boundary[0].mesh).positions)
+        high = std::max(high, p.z), wide = std::max(wide, p.x);
+    CHECK(wide == 0.01f);
+    CHECK(high == doctest::Approx(5e-5));
+
+    json table = listed;
+    table.erase("orders"), table.erase("reflects");
+    table["efficiencies"] = {{{"order", 1}, {"transmitted", 0.5}}};
+    CHECK(with_element(table).import().materials.size() == 2);
+    const auto error = [](json element) { return import_error(with_element(std::move(element)).glb()); };
+    json both = listed;
+    both["efficiencies"] = table["efficiencies"], both.erase("reflects");
+    CHECK(error(both).find("element: has both orders and efficiencies; allowed: one of them") !=
+          std::string::npos);
+    json fewer = listed;
+    fewer["efficiencies"] = {0.1, 0.3};
+    CHECK(error(fewer).find("/element/efficiencies") != std::string::npos);
+    json none = listed;
+    none.erase("size");
+    CHECK(error(none).find("/element") != std::string::npos);
 }
 
 TEST_CASE("an element of microstructure is a sheet in a box that it fills") {

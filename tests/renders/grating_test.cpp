@@ -10,6 +10,7 @@
 #include "host/spectra/color.h"
 #include "tests/renders/agreement_scenes.h"
 #include "tests/renders/algorithm_comparison.h"
+#include "tests/renders/stokes_means.h"
 
 using namespace etendue;
 using nlohmann::json;
@@ -210,6 +211,55 @@ TEST_CASE("power: the orders of a grating and what it absorbs are all that comes
         CHECK(counters.absorbed_by.at("material grating") ==
               doctest::Approx(c.absorbed * counters.emitted).epsilon(0.01));
     }
+}
+
+// Grooves and s lie along y, down in the picture; light comes across them from an even sky.
+TEST_CASE("a table that tells s from p polarizes light, reflected and let through") {
+    for (const bool reflects : {true, false}) {
+        SceneBuilder s;
+        s.environment(1);
+        const char* const kind = reflects ? "reflected" : "transmitted";
+        const json rows = {{{"order", 1}, {"polarization", "s"}, {kind, 0.6}},
+                           {{"order", 1}, {"polarization", "p"}, {kind, 0.2}}};
+        s.rectangle(
+            2, 2,
+            s.surface(
+                {{"class", "grating"}, {"period", 2e-6}, {"axis", -90 * degree}, {"efficiencies", rows}}),
+            {{0, 0, 0}, {0, std::sin(0.1), 0, std::cos(0.1)}});
+        s.orthographic(0.5, at(0, 0, 5));
+        RenderPlan plan;
+        plan.width = plan.height = 8, plan.passes = 64, plan.stokes = true;
+        SceneOptions options = test_options();
+        options.polarization = PolarizationMode::on;
+        Scene scene = compile_test_scene(s.import(), options);
+        check_stokes(stokes_means(render_estimates(scene, plan)), {0.4, -0.2, 0, 0}, 0.01);
+    }
+}
+
+// What it gives one way is not what it gives the other, as no grating does; all the more algorithms must
+// agree.
+TEST_CASE("algorithms agree: a table of efficiencies, in an element and on glass") {
+    SceneBuilder s;
+    s.medium("flint", {{"ior", 1.7}});
+    add_room(s);
+    add_lamp(s, 1);
+    json rows = json::array();
+    for (int m = -1; m <= 1; ++m)
+        for (const double angle : {-1.0, 0.0, 1.0})
+            rows.push_back({{"order", m},
+                            {"angle", angle},
+                            {"wavelength", {400, 700}},
+                            {"reflected", {0.1 + 0.05 * m * angle, 0.05}},
+                            {"transmitted", {0.1 + 0.05 * angle, 0.15 - 0.05 * m}}});
+    const json lined = {{"class", "grating"}, {"period", 2e-6}, {"axis", 0.5}, {"efficiencies", rows}};
+    add_box(s, {1.2f, 0.3f, 1.2f}, s.material({{"surface", lined}, {"inside", "flint"}}), false,
+            at(0.5, 0.3, -0.5));
+    json plate = lined;
+    plate["size"] = {1.2, 1.2};
+    s.placed("element", plate, facing({-0.8, -0.4, -0.8}, {0.3, 0.6, 1}, {1, 0, 0}));
+    Comparison c;
+    c.backward = 256, c.forward = 64, c.bidirectional = 32, c.largest_error = 0.02;
+    check_against_backward(s, c);
 }
 
 // A lamp that is seen and shines through a slab whose faces are gratings, and by one that reflects.

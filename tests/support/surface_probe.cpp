@@ -7,7 +7,7 @@
 
 #include "host/measured/mueller_table.h"
 #include "host/scene/features.h"
-#include "host/scene/grating_orders.h"
+#include "host/scene/grating_table.h"
 #include "host/scene/records.h"
 #include "tests/support/source_path.h"
 
@@ -83,6 +83,10 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     resolver.grating = [&](const nlohmann::json& value, const std::string& where) {
         return append(orders, read_grating_orders(value, scene, where, resolver.spectrum));
     };
+    std::vector<float> numbers;
+    resolver.grating_table = [&](const nlohmann::json& value, const std::string& where) {
+        return append(orders, numbers, read_grating_table(value, scene, where));
+    };
     RecordBuffer records;
     for (const nlohmann::json& p : parameters)
         records.add(*info, fill_record(*info, {class_name, p, "/surface"}, std::nullopt, resolver));
@@ -103,6 +107,7 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
     mueller_intensities_ = create_buffer(device, matrices.intensities, "Mueller intensities");
     mueller_ratios_ = create_buffer(device, matrices.ratios, "Mueller ratios");
     grating_orders_ = create_buffer(device, orders, "grating orders");
+    grating_numbers_ = create_buffer(device, numbers, "grating numbers");
     samples_ = Buffer(device, max_count * sizeof(SurfaceSample), "surface samples");
     answers_ = Buffer(device, sizeof(glm::vec4), "surface answers");
     pairs_ = Buffer(device, max_count * sizeof(DirectionPair), "direction pairs");
@@ -124,7 +129,8 @@ SurfaceProbe::SurfaceProbe(ClassRegistry& registry, const std::string& class_nam
                       {"MuellerNumbers", &mueller_numbers_},
                       {"MuellerIntensities", &mueller_intensities_},
                       {"MuellerRatios", &mueller_ratios_},
-                      {"GratingOrderRows", &grating_orders_}};
+                      {"GratingOrderRows", &grating_orders_},
+                      {"GratingNumbers", &grating_numbers_}};
     sample_ = probe_kernel(sources, "sample_surface.comp", table);
     evaluate_ = probe_kernel(sources, "evaluate_surface.comp", table);
     polarize_ = probe_kernel(sources, "polarize_surface.comp", table);

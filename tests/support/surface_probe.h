@@ -69,7 +69,8 @@ class SurfaceProbe {
 
   private:
     Buffer records_, samples_, answers_, pairs_, values_, measured_points_, measured_colors_, queries_,
-        muellers_, mueller_tables_, mueller_numbers_, mueller_intensities_, mueller_ratios_, grating_orders_;
+        muellers_, mueller_tables_, mueller_numbers_, mueller_intensities_, mueller_ratios_, grating_orders_,
+        grating_numbers_;
     std::vector<uint32_t> refs_;
     Kernel sample_, evaluate_, polarize_;
 };
