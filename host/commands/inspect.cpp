@@ -31,6 +31,24 @@ void print_choice(OpenedScene& opened, const Receiver& receiver, const InspectOp
     fmt::print("{}\n", json.dump(2));
 }
 
+// Of each what it is and what it stands in.
+void print_elements(const Scene& scene) {
+    const auto name_of = [&](uint32_t element) {
+        const std::string& name = scene.elements[element].name;
+        return name.empty() ? std::string("(unnamed)") : printable(name);
+    };
+    uint32_t contents = 0;
+    for (const PlacedElement& element : scene.elements) contents = std::max(contents, element.content + 1);
+    fmt::print("elements   {}, which hold {} different things\n", scene.elements.size(), contents);
+    constexpr size_t most = 16;
+    for (size_t i = 0; i < std::min(scene.elements.size(), most); ++i) {
+        const uint32_t parent = scene.elements[i].parent;
+        fmt::print("    {:<18} in {}\n", name_of(uint32_t(i)),
+                   parent == 0 ? "the scene" : name_of(parent - 1));
+    }
+    if (scene.elements.size() > most) fmt::print("    and {} more\n", scene.elements.size() - most);
+}
+
 }  // namespace
 
 int inspect_command(const InspectOptions& options) {
@@ -54,6 +72,7 @@ int inspect_command(const InspectOptions& options) {
         scene.center.z);
     fmt::print("hierarchy  built in {:.3f} s, cost {:.1f}, depth {}\n", scene.bvh_seconds, scene.bvh_cost,
                scene.bvh_depth);
+    if (!scene.elements.empty()) print_elements(scene);
     fmt::print("materials  {}, textures {}\n", scene.materials, scene.textures);
     if (!opened.variants.empty())
         fmt::print("variants   {}\n", printable(fmt::format("{}", fmt::join(opened.variants, ", "))));
@@ -79,6 +98,7 @@ int inspect_command(const InspectOptions& options) {
     feature(f.triangles, "triangles", "meshes", "no mesh");
     feature(f.shapes, "shapes", "analytic geometry", "no analytic geometry");
     feature(f.instances, "instances", "meshes placed several times", "every mesh is merged in world space");
+    feature(f.elements, "elements", "rays go into optical elements and out of them", "no optical elements");
     feature(f.vertex_attributes, "vertex attributes", "normals, tangents, texture coordinates or colors",
             "positions only");
     feature(f.textures, "textures", "materials use images", "no material uses an image");

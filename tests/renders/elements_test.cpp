@@ -95,6 +95,30 @@ TEST_CASE("lamps and a camera within elements") {
     check_against_backward(scene, c);
 }
 
+// What happens within has the digits of the element's own frame.
+TEST_CASE("an element is the same wherever it stands") {
+    std::vector<std::vector<float>> images;
+    for (const double metres : {0.0, 1.0, 100.0}) {
+        SceneBuilder s = room();
+        s.document["nodes"][0]["children"].erase(3);  // the camera
+        s.document["nodes"][0]["children"].erase(0);  // the room
+        const int white = s.lambertian({0.8, 0.8, 0.8}), lamp = s.black_emitter({10, 9, 8}), clear = glass(s);
+        const int inner = s.scene([&] {
+            s.perspective(0.9, at(0, 0, 0.4));
+            add_box(s, {1, 1, 1}, white, true, at(0, 0, 0));
+            s.sphere(0.1, clear, at(0.1, -0.1, 0));
+            s.rectangle(0.4, 0.4, lamp, facing_down(0, 0.49, 0));
+        });
+        s.placed("element", subscene(inner), {{metres, -metres, metres}, turned});
+        RenderPlan plan;
+        plan.width = 32, plan.height = 24, plan.seeds = 2, plan.passes = 16;
+        const Estimates e = render_estimates(s.import(), plan);
+        images.push_back(e.images.at(0));
+    }
+    CHECK(images[0] == images[1]);
+    CHECK(images[0] == images[2]);
+}
+
 // No ray meets it by chance, and no light is sampled through a boundary: forward rays alone bring its light.
 TEST_CASE("a point lamp within an element") {
     const auto build = [](bool element) {
