@@ -3,7 +3,7 @@
 
     tools/pack_places.py dots.txt dots.bin --size 0.4x0.25 --radius 3e-5
 
-SIZE is that of the sheet, m, RADIUS the element's; cells are twice as wide or more. Ridges want --rows 1.
+SIZE is that of the sheet, m, RADIUS the elements'; cells are 3 to 64 times as wide. Ridges want --rows 1.
 """
 
 import argparse
@@ -36,7 +36,7 @@ def main():
     places = list(read(options.text))
     if not places:
         raise SystemExit(f"{options.text}: there are no elements")
-    cell = max(math.sqrt(width * height / len(places)), 2.9 * options.radius)
+    cell = max(min(math.sqrt(width * height / len(places)), 64 * options.radius), 2.9 * options.radius)
     columns, rows = max(1, int(width / cell)), options.rows or max(1, int(height / cell))
     entries = []
     for number, x, y, size, angle in places:

@@ -18,7 +18,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr char magic[8] = {'E', 'T', 'D', 'P', 'L', 'A', 'C', 'E'};
-constexpr uint64_t most = UINT32_MAX - 1;  // elements of a scene, and cells
+constexpr uint64_t most = UINT32_MAX - 1;   // elements of a scene, and cells
+constexpr double most_cells_a_side = 8192;  // beyond one for each element
 struct Header {
     char magic[8];
     uint32_t version, columns, rows, places;
@@ -107,7 +108,7 @@ std::vector<Piece> read_text(const std::string& file, const std::string& text, c
 
 uint32_t part(double of_one) { return uint32_t(std::clamp(std::floor(of_one * 65536), 0.0, 65535.0)); }
 
-// Into cells, about one element each, that are as wide as the elements or wider.
+// Into cells that are as wide as the elements or wider.
 MicroPlaces pack(const std::string& file, const std::vector<Piece>& pieces, const MicroSheet& sheet,
                  MicroTables& tables) {
     uint64_t count = 0;
@@ -123,9 +124,11 @@ MicroPlaces pack(const std::string& file, const std::vector<Piece>& pieces, cons
     const double widest =
         2.0001 * sheet.radius * greatest * (sheet.foot == MicroSheet::square ? std::sqrt(2) : 1);
     const bool strips = sheet.foot == MicroSheet::strip;
-    const double cell = std::max(
-        strips ? sheet.size.x / double(count) : std::sqrt(sheet.size.x * sheet.size.y / double(count)),
-        widest);
+    // About one a cell, or more cells: a place is right to a thousandth of the widest element then.
+    const double each =
+        strips ? sheet.size.x / double(count) : std::sqrt(sheet.size.x * sheet.size.y / double(count));
+    const double finest = std::min(std::max(sheet.size.x, sheet.size.y) / most_cells_a_side, each);
+    const double cell = std::max({std::min(each, 32 * widest), widest, finest});
     const auto number = [&](double length) {
         return uint32_t(std::clamp(std::floor(length / cell), 1.0, double(1 << 24)));
     };
@@ -274,7 +277,7 @@ MicroPlaces read_micro_places(const std::filesystem::path& path, const MicroShee
                               MicroTables& tables) {
     const std::string file = path.string();
     std::ifstream stream(path, std::ios::binary | std::ios::ate);
-    if (!stream) fail_input("{}: cannot be read", file);
+    if (!stream || !std::filesystem::is_regular_file(path)) fail_input("{}: cannot be read", file);
     const uint64_t bytes = uint64_t(stream.tellg());
     stream.seekg(0);
     std::string head(std::min<uint64_t>(bytes, sizeof magic), 0);

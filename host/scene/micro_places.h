@@ -29,8 +29,8 @@ struct MicroSheet {
 };
 
 // Reads a file and adds it to the tables. Fails, with one line that names the file and, of text, the line,
-// where an element does not lie on the sheet or two overlap. 12 bytes an element, and 4 a cell, of which
-// there are no more than elements in files of text.
+// where an element does not lie on the sheet or two overlap. 8 bytes an element, and 4 a cell, of which
+// there are 2^26, or as many as elements, at most in files of text.
 MicroPlaces read_micro_places(const std::filesystem::path& file, const MicroSheet& sheet, unsigned threads,
                               MicroTables& tables);
 
