@@ -7,13 +7,13 @@
 // scene uses (see generated headers in host/scene/features.h).
 
 // folder geometry/, contract interfaces/geometry.glsl
-#define GEOMETRY_CLASSES(X)    \
-    X(1, Triangle, triangle)   \
-    X(2, Sphere, sphere)       \
-    X(3, Disk, disk)           \
-    X(4, Rectangle, rectangle) \
-    X(5, Cylinder, cylinder)   \
-    X(6, Asphere, asphere)     \
+#define GEOMETRY_CLASSES(X)         \
+    X(1, Triangle, triangle)        \
+    X(2, Sphere, sphere)            \
+    X(3, Disk, disk)                \
+    X(4, Rectangle, rectangle)      \
+    X(5, Cylinder, cylinder)        \
+    X(6, Asphere, asphere)          \
     X(7, BezierPatch, bezier_patch) \
     X(9, Microstructure, microstructure)
 

@@ -81,18 +81,21 @@ struct Derivatives {
 
     explicit Derivatives(const HomogeneousNet& net, const dvec3& origin) : Derivatives(fill(net, origin)) {}
 
-    // Bounds of |duu|, |duv|, |dvv|: duu = (Au W - 2 A Wu) / W³.
-    dvec3 second() const {
+    // Bounds of |duu|, |duv|, |dvv|, across the axis and along it: duu = (Au W - 2 A Wu) / W³.
+    void second(const dvec3& axis, dvec3& along, dvec3& out) const {
         double least = w.coefficients[0];
         for (const double x : w.coefficients) least = std::min(least, x);
-        const auto bound = [&](const Bernstein<dvec3>& p) {
-            double greatest = 0;
-            for (const dvec3& x : p.coefficients) greatest = std::max(greatest, glm::length(x));
-            return greatest / (least * least * least);
+        const auto bound = [&](int i, const Bernstein<dvec3>& p) {
+            along[i] = out[i] = 0;
+            for (const dvec3& x : p.coefficients) {
+                const double part = glm::dot(x, axis);
+                out[i] = std::max(out[i], std::abs(part) / (least * least * least));
+                along[i] = std::max(along[i], glm::length(x - part * axis) / (least * least * least));
+            }
         };
-        return {bound(product_difference(derivative_u(a), w, a, derivative_u(w), 2)),
-                bound(product_difference(derivative_v(a), w, a, derivative_v(w), 2)),
-                bound(product_difference(derivative_v(b), w, b, derivative_v(w), 2))};
+        bound(0, product_difference(derivative_u(a), w, a, derivative_u(w), 2));
+        bound(1, product_difference(derivative_v(a), w, a, derivative_v(w), 2));
+        bound(2, product_difference(derivative_v(b), w, b, derivative_v(w), 2));
     }
 
   private:
@@ -190,7 +193,7 @@ glm::dmat4 area_density(const HomogeneousNet& net) {
 }
 
 BezierPiece piece_of(const HomogeneousPatch& patch, const Cone& u, const Cone& v, const Extent& hull,
-                     const dvec3& origin, const dvec3& second) {
+                     const dvec3& origin, const Derivatives& derivatives) {
     BezierPiece piece{};
     double weight = 0, radius = 0;
     for (const auto& row : patch.points)
@@ -214,7 +217,9 @@ BezierPiece piece_of(const HomogeneousPatch& patch, const Cone& u, const Cone& v
     piece.hi = glm::vec3(glm::min(extent.hi, hull.hi) + slack);
     const dvec3 normal = glm::cross(u.axis, v.axis);
     piece.axis = glm::length(normal) > 1e-6 ? glm::vec3(glm::normalize(normal)) : glm::vec3(0, 0, 1);
-    piece.second = glm::vec3(second * 1.00001);
+    dvec3 along, out;
+    derivatives.second(dvec3(piece.axis), along, out);
+    piece.second_along = glm::vec3(along * 1.00001), piece.second_out = glm::vec3(out * 1.00001);
     piece.domain = glm::vec4(patch.domain);
     return piece;
 }
@@ -229,7 +234,7 @@ void cut(const HomogeneousPatch& patch, int cuts_u, int cuts_v, std::vector<Bezi
     const bool is_flat = std::max(u.angle, v.angle) <= widest_cone && u.angle + v.angle <= 0.5 * between;
     const bool may_u = cuts_u < most_cuts, may_v = cuts_v < most_cuts;
     if (is_flat || (!may_u && !may_v)) {
-        out.push_back(piece_of(patch, u, v, hull, origin, derivatives.second()));
+        out.push_back(piece_of(patch, u, v, hull, origin, derivatives));
         return;
     }
     const bool along_v = may_v && (!may_u || std::max(u.turn_v, v.turn_v) > std::max(u.turn_u, v.turn_u));

@@ -26,7 +26,7 @@ struct BezierPiece {
     float radius;
     glm::vec3 lo, hi;
     glm::vec3 axis;
-    glm::vec3 second;
+    glm::vec3 second_along, second_out;
     float slack;
     glm::vec4 domain;
 };

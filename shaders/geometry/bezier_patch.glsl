@@ -23,7 +23,8 @@ struct BezierPiece {
     float radius;       // m, of a ball around the origin that holds the piece
     vec3 lo, hi;        // m, in the frame of the patch
     vec3 axis;          // about normal, unit
-    vec3 second;        // bounds of |duu|, |duv|, |dvv|, m
+    vec3 second_along;  // bounds of |duu|, |duv|, |dvv|, m: of their parts across the axis
+    vec3 second_out;    // … and along it
     float slack;        // m, bound of what rounding does to places, of any piece of the object
     vec4 domain;        // u and v where the piece begins and ends
 };
@@ -88,6 +89,8 @@ bool bezier_patch_intersect(BezierPatch r, vec3 origin, vec3 direction, float t_
     float slack = bezier_slack(p, origin) + gamma(8.0) * shift, limit = t_max * speed - shift;
     // The ray's own frame: along z, x across the normal.
     vec3 x = cross(p.axis, d);
+    // Second derivatives as the ray sees them: what lies along it is foreshortened.
+    vec3 second = p.second_along + p.second_out, across = p.second_along + p.second_out * min(1.0001 * length(x), 1.0);
     if (dot(x, x) < 1e-12) x = abs(d.x) < 0.7 ? cross(d, vec3(1, 0, 0)) : cross(d, vec3(0, 1, 0));
     x = normalize(x);
     mat3 to_ray = transpose(mat3(x, cross(d, x), d));
@@ -103,15 +106,20 @@ bool bezier_patch_intersect(BezierPatch r, vec3 origin, vec3 direction, float t_
         vec2 lo = max(center - 1.25 * h, 0.0), hi = min(center + 1.25 * h, 1.0);
         vec2 next = bezier_step(q, a.xy, du.xy, dv.xy, lo, hi);
         if (steps == 0u) {
-            // The surface in the square is flat within `bent`.
-            float bent = (0.5 * p.second.x + p.second.y + 0.5 * p.second.z) * h * h + slack;
-            vec3 reach = (abs(du) + abs(dv)) * h + bent;
+            // The surface in the square is flat within `bent`, along the ray within `deep`.
+            float bent = (0.5 * across.x + across.y + 0.5 * across.z) * h * h + slack;
+            float deep = (0.5 * second.x + second.y + 0.5 * second.z) * h * h + slack;
+            vec3 reach = (abs(du) + abs(dv)) * h + vec3(bent, bent, deep);
             bool meets = all(lessThanEqual(abs(a.xy), reach.xy)) && a.z + reach.z > -shift && a.z - reach.z < limit;
-            float det = abs(du.x * dv.y - du.y * dv.x), inverse = max(length(du.xy), length(dv.xy));
-            bool sure = inverse * (p.second.x + 2.0 * p.second.y + p.second.z) * h <= 0.5 * det;
+            float signed_det = du.x * dv.y - du.y * dv.x, det = abs(signed_det), inverse = max(length(du.xy), length(dv.xy));
+            bool sure = inverse * (across.x + 2.0 * across.y + across.z) * h <= 0.5 * det;
             if (sure) {
                 vec2 root = vec2(dv.y * a.x - dv.x * a.y, du.x * a.y - du.y * a.x);
-                meets = meets && all(lessThanEqual(abs(root), vec2(h * det + inverse * bent)));
+                // The point's place along the ray, within what these may change.
+                float z = a.z * det - dot(vec2(du.z, dv.z), signed_det < 0.0 ? -root : root);
+                float off = deep * det + bent * inverse * (abs(du.z) + abs(dv.z));
+                meets = meets && all(lessThanEqual(abs(root), vec2(h * det + inverse * bent))) && z + off > -shift * det &&
+                        z - off < limit * det;
             }
             if (meets && (sure || level == BEZIER_LEVELS)) {
                 starts = sure ? 1u : 2u;

@@ -209,7 +209,7 @@ TEST_CASE("the host's record of a piece is laid out as the shader's") {
     CHECK(offsets.at("radius") == offsetof(BezierPiece, radius));
     CHECK(offsets.at("hi") == offsetof(BezierPiece, hi));
     CHECK(offsets.at("axis") == offsetof(BezierPiece, axis));
-    CHECK(offsets.at("second") == offsetof(BezierPiece, second));
+    CHECK(offsets.at("second_out") == offsetof(BezierPiece, second_out));
     CHECK(offsets.at("slack") == offsetof(BezierPiece, slack));
     CHECK(offsets.at("domain") == offsetof(BezierPiece, domain));
 }

@@ -172,16 +172,15 @@ inline std::string uneven_rays() {
     return path.string();
 }
 
-// Two patches that share a border, bent.
-inline nlohmann::json bent_patches() {
-    nlohmann::json patches(2, nlohmann::json::array());
-    for (int k = 0; k < 2; ++k)
-        for (int j = 0; j < 4; ++j)
-            for (int i = 0; i < 4; ++i) {
-                const double x = (i + 3 * k) / 6.0, y = j / 3.0;
-                patches[size_t(k)].push_back({x - 0.5, 0.8 * y - 0.4, 0.8 * x * (1 - x) + 0.3 * y * y});
-            }
-    return {{"control_points", patches}};
+// Rational, and one piece.
+inline nlohmann::json bent_patch() {
+    nlohmann::json points = nlohmann::json::array();
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i) {
+            const double x = i / 3.0 - 0.5, y = 0.8 * (j / 3.0 - 0.5);
+            points.push_back({x, y, -0.25 * x * x - 0.2 * y * y - 0.1 * x * y, 1 + 0.02 * i * j});
+        }
+    return {{"control_points", points}};
 }
 
 inline std::vector<EmissionCase> emission_cases() {
@@ -206,8 +205,7 @@ inline std::vector<EmissionCase> emission_cases() {
         {"area", "asphere, both sides",
          shape_scene("asphere", {{"curvature", -2}, {"conic", -1}, {"coefficients", {-1}}, {"aperture", 0.4}},
                      down(0.4), true)},
-        // Of patches as many lights as pieces.
-        {"area", "patches", shape_scene("bezier_patch", bent_patches(), squeezed), 0.01},
+        {"area", "patch", shape_scene("bezier_patch", bent_patch(), squeezed), 0.01},
         {"point", "", light_scene("point", {{"intensity", 7}, {"color", {1, 0.5, 0.25}}})},
         {"spot", "wide", light_scene("spot", {{"inner_cone_angle", 0.3}, {"outer_cone_angle", 0.9}})},
         {"spot", "to a point", light_scene("spot", {{"inner_cone_angle", 0}, {"outer_cone_angle", 1.5}})},
