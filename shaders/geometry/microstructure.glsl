@@ -187,14 +187,11 @@ MicroElement microstructure_find(Microstructure r, MicroGrid g, vec2 middle) {
             for (uint i = elements.x; i < elements.y; ++i) {
                 MicroElement e = microstructure_flat_element(r, g, ivec2(column, row), i);
                 float distance = length(middle - microstructure_center(e).xy);
-                if (distance < nearest) {
-                    nearest = distance;
-                    best = microstructure_element(r, g, ivec2(column, row), i);
-                }
+                if (distance < nearest) nearest = distance, best = e;
             }
         }
     }
-    return best;
+    return microstructure_wrapped(r, best);
 }
 
 LocalPoint microstructure_on_element(Microstructure r, MicroGrid g, vec3 p, vec2 q) {

@@ -96,14 +96,16 @@ MicroElement microstructure_flat_element(Microstructure r, MicroGrid g, ivec2 ce
 }
 
 // … in its place on the cylinder.
-MicroElement microstructure_element(Microstructure r, MicroGrid g, ivec2 cell, uint number) {
-    MicroElement e = microstructure_flat_element(r, g, cell, number);
+MicroElement microstructure_wrapped(Microstructure r, MicroElement e) {
     if (r.bend == 0.0) return e;
     float turns = (e.cell.x + (e.offset.x + e.cell_low.x)) / (2.0 * PI * r.bend), half_sine = cos_sin_turns(0.5 * turns).y;
     e.axes = cos_sin_turns(turns);
     e.cell = vec3(r.bend * e.axes.y, e.cell.y, -2.0 * r.bend * half_sine * half_sine);
     e.cell_low.x = e.offset.x = 0.0;
     return e;
+}
+MicroElement microstructure_element(Microstructure r, MicroGrid g, ivec2 cell, uint number) {
+    return microstructure_wrapped(r, microstructure_flat_element(r, g, cell, number));
 }
 
 vec3 microstructure_to_element(Microstructure r, MicroElement e, vec3 v) {
