@@ -104,7 +104,9 @@ void fill_parameter(const ClassInfo& info, const Parameter& p, const json& value
         for (size_t i = 0; i < value.size(); ++i)
             store(record, at + 4 * uint32_t(i), checked_number(value[i], p, fmt::format("{}/{}", place, i)));
     } else if (type == "BezierPiece") {
-        const auto only = [&] { return cut_bezier_patches(read_bezier_patches(value, place), place).front(); };
+        const auto only = [&] {
+            return cut_bezier_patches(read_bezier_patches(value, place), place).front();
+        };
         store(record, at, resolver.piece ? *resolver.piece : only());
     } else if (type == "MuellerMatrix") {
         if (!value.is_array() || value.size() != 16)

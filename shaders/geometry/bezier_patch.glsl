@@ -1,8 +1,8 @@
 // Bicubic Bézier patches, with weights if they are rational, so that spheres and tori are exact; the host makes them of splines, too
 // (`nurbs_patch`). Seen from the side that du x dv points to. Borders that fall together at a point are allowed.
 //
-// The host cuts patches into pieces, a record each (host/geometry/bezier_pieces.h): along a piece the directions of du and dv turn by a
-// quarter at most, within cones that do not overlap, so that it is a graph over a plane, and second derivatives are bounded. A ray is
+// The host cuts patches into pieces, a record each (host/geometry/bezier_pieces.h): along a piece the directions of du and dv keep within
+// 0.25 rad of their means, in cones that do not overlap, so that it is a graph over a plane, and second derivatives are bounded. A ray is
 // sought in the squares of a piece, halved as long as more than one point could lie in a square (Moore 1977, the interval test of
 // Newton's method: Krawczyk 1969); a square with one is left to Newton. A point is met where the surface comes as near to the ray as
 // numbers are sure of: neighbours agree on their common border to less than that, so that no ray slips through.
@@ -145,7 +145,10 @@ bool bezier_patch_intersect(BezierPatch r, vec3 origin, vec3 direction, float t_
                 q = next;
                 continue;
             }
-            if (length(a.xy) <= slack && a.z > -shift && a.z < limit) {
+            // Near to the ray, and crossed by it: one that leaves the surface is near to where it began, too.
+            vec3 n = cross(du, dv);
+            bool crosses = n.z * (dot(n, a) + shift * n.z) >= 0.0;
+            if (crosses && length(a.xy) <= slack && a.z > -shift && a.z < limit) {
                 found = true, limit = a.z;
                 hit = GeometryHit((shift + a.z) / speed, q);
             } else if (starts == 2u) {
