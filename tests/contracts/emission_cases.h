@@ -205,7 +205,7 @@ inline std::vector<EmissionCase> emission_cases() {
         {"area", "asphere, both sides",
          shape_scene("asphere", {{"curvature", -2}, {"conic", -1}, {"coefficients", {-1}}, {"aperture", 0.4}},
                      down(0.4), true)},
-        {"area", "patch", shape_scene("bezier_patch", bent_patch(), squeezed), 0.01},
+        {"area", "patch, both sides", shape_scene("bezier_patch", bent_patch(), down(0.4), true)},
         {"point", "", light_scene("point", {{"intensity", 7}, {"color", {1, 0.5, 0.25}}})},
         {"spot", "wide", light_scene("spot", {{"inner_cone_angle", 0.3}, {"outer_cone_angle", 0.9}})},
         {"spot", "to a point", light_scene("spot", {{"inner_cone_angle", 0}, {"outer_cone_angle", 1.5}})},
