@@ -109,10 +109,9 @@ Renderer::Renderer(Device& device, Scene& scene, const RenderSettings& settings)
     techniques.connect &= settings_.connect;
     techniques.beams &= settings_.beams;
     techniques.several_views = views_.count() > 1;
-    techniques.ray_record =
-        settings_.record_rays && techniques.forward &&
-        std::any_of(views_.all().begin(), views_.all().end(),
-                    [&](const FilmView& view) { return records_rays(scene, view); });
+    techniques.ray_record = settings_.record_rays && techniques.forward &&
+                            std::any_of(views_.all().begin(), views_.all().end(),
+                                        [&](const FilmView& view) { return records_rays(scene, view); });
     techniques.light_layers = uint32_t(light_layers_.names().size());
     techniques.layer_defines = light_layers_.defines();
     if (settings_.stokes && !settings.layers.empty())

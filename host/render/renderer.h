@@ -58,9 +58,9 @@ struct RenderSettings {
     uint64_t vertex_bytes = uint64_t(256) << 20;  // for vertices of forward paths; more make smaller passes
     float merge_radius = 1;                       // of the first pass, in widths of a pixel; > 0
     bool restarts_first = false;                  // before any pass: the film is not cleared until then
-    uint32_t spectral_bins = 0;  // of a spectral image, where paths carry wavelengths; 0 = none
-    bool record_rays = false;    // that cross receivers which record them, where there are forward rays
-    bool stokes = false;         // S1 to S3, too, where paths carry polarization
+    uint32_t spectral_bins = 0;      // of a spectral image, where paths carry wavelengths; 0 = none
+    bool record_rays = false;        // that cross receivers which record them, where there are forward rays
+    bool stokes = false;             // S1 to S3, too, where paths carry polarization
     std::vector<LightLayer> layers;  // that hold a part of the light (light_layers.h); not with `stokes`
     bool ledger = false;             // forward rays tell what each material has absorbed
 };

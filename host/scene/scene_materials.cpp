@@ -20,7 +20,7 @@ void check_pupil(const nlohmann::json& parameters, const std::string& place) {
         fail_input("{}/pupil: its distance is 0; allowed: more than 0 m", place);
 }
 constexpr double smooth_alpha = 1e-4;  // below which a surface is smooth (shaders/lib/microfacet.glsl)
-}
+}  // namespace
 
 uint32_t SceneCompiler::medium_ref(const std::string& name, const std::string& where) {
     if (name.empty()) return no_record;
@@ -97,7 +97,9 @@ void SceneCompiler::add_materials() {
         for (const PlacedObject& receiver : in_.receivers) {
             const nlohmann::json& parameters = receiver.object.parameters;
             check_pupil(parameters, message_place(in_, receiver.object.where));
-            out_.features.receptor_shapes |= (parameters.contains("shape") && parameters["shape"] != "plane") || parameters.contains("pupil");
+            out_.features.receptor_shapes |=
+                (parameters.contains("shape") && parameters["shape"] != "plane") ||
+                parameters.contains("pupil");
         }
     }
     const auto refs = references(Interface::surface, surfaces);

@@ -63,7 +63,7 @@ struct SceneMemory {
     MicroTables micro_tables;
     std::map<std::string, MicroPlaces> micro_files;  // by file and sheet
     CellTables cell_tables;
-    std::map<uint32_t, CellMesh> cells;  // of SceneDescription::cells
+    std::map<uint32_t, CellMesh> cells;                       // of SceneDescription::cells
     std::vector<std::shared_ptr<const MieTable>> mie_tables;  // of the last compilation
 
     uint64_t world_key = 0;

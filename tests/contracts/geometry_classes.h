@@ -278,7 +278,11 @@ inline const std::map<std::string, Oracle>& oracles() {
           false}},
         // Bulges towards +z, so that what leaves it on that side does not come back.
         {"asphere",
-         {{{"curvature", -0.25}, {"conic", -0.5}, {"coefficients", {-0.1, 0, -0.3}}, {"aperture", 0.8}, {"hole", 0.25}},
+         {{{"curvature", -0.25},
+           {"conic", -0.5},
+           {"coefficients", {-0.1, 0, -0.3}},
+           {"aperture", 0.8},
+           {"hole", 0.25}},
           [](V o, V d) {
               Ts result = asphere.crossings(o, d);
               std::erase_if(result, [&](double t) {

@@ -170,9 +170,10 @@ TEST_CASE("domes on and in cylinders are met where double precision says") {
                     off = std::max(off, std::abs(glm::dot(away, n)) /
                                             glm::dot(glm::abs(n), glm::dvec3(traces[i].error)));
                 }
-                MESSAGE("bend ", bend, std::string(dents ? " dents" : " bumps"), std::string(is_closed ? " all around: " : ": "),
-                        on_domes, " on domes, ", unsure, " unsure, ", wrong, " wrong, others within ",
-                        farthest / pitch, " pitches, and ", off, " of their bounds");
+                MESSAGE("bend ", bend, std::string(dents ? " dents" : " bumps"),
+                        std::string(is_closed ? " all around: " : ": "), on_domes, " on domes, ", unsure,
+                        " unsure, ", wrong, " wrong, others within ", farthest / pitch, " pitches, and ", off,
+                        " of their bounds");
                 CHECK(on_domes > 1000);
                 CHECK(wrong == 0);
                 CHECK(farthest < 1e-4 * pitch);
