@@ -42,16 +42,21 @@ void check_uniform(const Estimates& e, double value) {
 
 }  // namespace
 
-TEST_CASE("a ball of glass in an element, three deep, is as it is without") {
+TEST_CASE("a ball of glass in an element, ten deep, is as it is without") {
     SceneBuilder plain = room();
     plain.sphere(0.3, glass(plain), at(0.35, -0.3, -0.1));
 
     SceneBuilder s = room();
     const int material = glass(s);
     const int ball = s.scene([&] { s.sphere(0.3, material, at(0.01, 0.02, 0)); });
-    const int holder = s.scene([&] { s.placed("element", subscene(ball), at(-0.01, -0.02, 0)); });
-    const int shell = s.scene([&] { s.placed("element", subscene(holder), {{0, 0, 0}, turned}); });
-    s.placed("element", subscene(shell), at(0.35, -0.3, -0.1));
+    int held = s.scene([&] { s.placed("element", subscene(ball), at(-0.01, -0.02, 0)); });
+    for (int depth = 2; depth < 9; ++depth) {
+        const int inner = held;
+        held = s.scene([&] { s.placed("element", subscene(inner), at(0, 0, 0)); });
+    }
+    const int last = held;
+    held = s.scene([&] { s.placed("element", subscene(last), {{0, 0, 0}, turned}); });
+    s.placed("element", subscene(held), at(0.35, -0.3, -0.1));
     Scene scene = compile_test_scene(s.import());
     CHECK(scene.features.elements);
 
