@@ -64,7 +64,40 @@ inline std::optional<glm::dvec3> dome_over(const glm::dvec3& p) {
 inline bool dome_covers(const std::optional<glm::dvec3>& dome, const glm::dvec3& p) {
     return dome && std::hypot(p.x - dome->x, p.y - dome->y) < dome_radius;
 }
-// Of the class `asphere`: all crossings within the rim, by steps and halves.
+// Where a height along a ray is 0 between two t, `speed` being the ray's metres a unit of t: by steps, then
+// halves; a pair of crossings within a step about where the height is least, by thirds.
+inline std::vector<double> crossings_between(const std::function<double(double)>& at, double low, double high,
+                                             int steps, double speed) {
+    std::vector<double> found;
+    if (!(low < high)) return found;
+    const auto solve = [&](double l, double r) {
+        const double side = at(l);
+        for (int k = 0; k < 50; ++k) (side * at(0.5 * (l + r)) > 0 ? l : r) = 0.5 * (l + r);
+        found.push_back(0.5 * (l + r));
+    };
+    double a = low, at_a = at(a);
+    for (int i = 1; i <= steps; ++i) {
+        const double b = low + (high - low) * i / steps, at_b = at(b);
+        if (at_a * at_b <= 0) {
+            solve(a, b);
+        } else if (std::min(std::abs(at_a), std::abs(at_b)) < 3 * (b - a) * speed) {
+            double l = a, r = b;
+            for (int k = 0; k < 40; ++k) {
+                const double m = l + (r - l) / 3, n = r - (r - l) / 3, at_m = at(m), at_n = at(n);
+                if (std::min(at_m * at_a, at_n * at_a) <= 0) {
+                    const double middle = at_m * at_a <= 0 ? m : n;
+                    solve(a, middle), solve(middle, b);
+                    break;
+                }
+                (std::abs(at_m) < std::abs(at_n) ? r : l) = std::abs(at_m) < std::abs(at_n) ? n : m;
+            }
+        }
+        a = b, at_a = at_b;
+    }
+    return found;
+}
+
+// Of the class `asphere`: all crossings within the rim.
 struct AsphereOracle {
     SurfaceShape shape;
     double aperture;
@@ -86,34 +119,7 @@ struct AsphereOracle {
             return {};
         }
         const auto at = [&](double t) { return height(o + t * d); };
-        std::vector<double> found;
-        const auto solve = [&](double l, double r) {
-            const double side = at(l);
-            for (int k = 0; k < 50; ++k) (side * at(0.5 * (l + r)) > 0 ? l : r) = 0.5 * (l + r);
-            found.push_back(0.5 * (l + r));
-        };
-        constexpr int steps = 32;
-        double a = low, at_a = at(a);
-        for (int i = 1; i <= steps && low < high; ++i) {
-            const double b = low + (high - low) * i / steps, at_b = at(b);
-            if (at_a * at_b <= 0) {
-                solve(a, b);
-            } else if (std::min(std::abs(at_a), std::abs(at_b)) < 3 * (b - a) * glm::length(d)) {
-                // A pair of crossings within a step: about where the height is least, by thirds.
-                double l = a, r = b;
-                for (int k = 0; k < 40; ++k) {
-                    const double m = l + (r - l) / 3, n = r - (r - l) / 3, at_m = at(m), at_n = at(n);
-                    if (std::min(at_m * at_a, at_n * at_a) <= 0) {
-                        const double middle = at_m * at_a <= 0 ? m : n;
-                        solve(a, middle), solve(middle, b);
-                        break;
-                    }
-                    (std::abs(at_m) < std::abs(at_n) ? r : l) = std::abs(at_m) < std::abs(at_n) ? n : m;
-                }
-            }
-            a = b, at_a = at_b;
-        }
-        return found;
+        return crossings_between(at, low, high, 32, glm::length(d));
     }
     double distance(glm::dvec3 p) const { return height(p) * shape.normal(p).z; }
 };
@@ -161,33 +167,7 @@ struct GraphOracle {
             low = std::max(low, std::min(a, b)), high = std::min(high, std::max(a, b));
         }
         const auto at = [&](double t) { return (o + t * d).z - height((o + t * d).x, (o + t * d).y); };
-        std::vector<double> found;
-        const auto solve = [&](double l, double r) {
-            const double side = at(l);
-            for (int k = 0; k < 50; ++k) (side * at(0.5 * (l + r)) > 0 ? l : r) = 0.5 * (l + r);
-            found.push_back(0.5 * (l + r));
-        };
-        constexpr int steps = 48;
-        double a = low, at_a = low < high ? at(low) : 0;
-        for (int i = 1; i <= steps && low < high; ++i) {
-            const double b = low + (high - low) * i / steps, at_b = at(b);
-            if (at_a * at_b <= 0) {
-                solve(a, b);
-            } else if (std::min(std::abs(at_a), std::abs(at_b)) < 3 * (b - a) * glm::length(d)) {
-                double l = a, r = b;  // a pair within a step: about where the height is least, by thirds
-                for (int k = 0; k < 40; ++k) {
-                    const double m = l + (r - l) / 3, n = r - (r - l) / 3, at_m = at(m), at_n = at(n);
-                    if (std::min(at_m * at_a, at_n * at_a) <= 0) {
-                        const double middle = at_m * at_a <= 0 ? m : n;
-                        solve(a, middle), solve(middle, b);
-                        break;
-                    }
-                    (std::abs(at_m) < std::abs(at_n) ? r : l) = std::abs(at_m) < std::abs(at_n) ? n : m;
-                }
-            }
-            a = b, at_a = at_b;
-        }
-        return found;
+        return crossings_between(at, low, high, 48, glm::length(d));
     }
 };
 
